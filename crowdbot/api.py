@@ -289,8 +289,8 @@ def results(root: str | Path = "runs", *, altered: bool = False) -> Results:
     """
     from crowdbot.core.results.results import Results as AllResults
 
-    found = AllResults.open(root)
-    return found if altered else found.without_altered()
+    all_results = AllResults.open(root)
+    return all_results if altered else all_results.without_altered()
 
 
 def _check_recorded(

@@ -64,13 +64,13 @@ class SpecError(InputError):
 class UnknownNameError(InputError):
     """An unknown name; the message ends with the reason or similar names."""
 
-    def __init__(self, what: str, name: str, known: Iterable[str], why: str = "") -> None:
+    def __init__(self, kind: str, name: str, known: Iterable[str], why: str = "") -> None:
         names = sorted(known)
-        self.what, self.name, self.near = what, name, nearest(name, names)
+        self.kind, self.name, self.near = kind, name, nearest(name, names)
         hint = f"; {why}" if why else did_you_mean(self.near)
         if not hint and 0 < len(names) <= _FEW:
             hint = f"; there are: {', '.join(names)}"
-        super().__init__(f"unknown {what} '{name}'{hint}")
+        super().__init__(f"unknown {kind} '{name}'{hint}")
 
 
 class UsageError(CrowdbotError):

@@ -128,12 +128,12 @@ def resolve(
         raise InputError("an edition has its own draws of people; leave draws out")
     if contact not in ("go_on", "end"):
         raise InputError(f"contact must be 'go_on' or 'end', not {contact!r}")
-    wanted = [scenario] if levels is None else list(levels)
-    if not wanted:
+    patterns = [scenario] if levels is None else list(levels)
+    if not patterns:
         raise InputError("levels must name at least one level")
     return EnvSetup(
         registry=registry,
-        levels=tuple(_scenarios(expansion, level) for level in wanted),
+        levels=tuple(_scenarios(expansion, level) for level in patterns),
         observation=spec_of(registry, "observation", observation),
         reward=spec_of(registry, "reward", reward),
         draws=draws,
@@ -143,11 +143,11 @@ def resolve(
     )
 
 
-def _scenarios(expansion: Any, wanted: str | Sequence[str] | None) -> tuple[Scenario, ...]:
+def _scenarios(expansion: Any, patterns: str | Sequence[str] | None) -> tuple[Scenario, ...]:
     """Return the scenarios of ids or patterns, in the suite's order."""
-    if wanted is None:
+    if patterns is None:
         return tuple(expansion.scenarios)
-    names = [wanted] if isinstance(wanted, str) else list(wanted)
+    names = [patterns] if isinstance(patterns, str) else list(patterns)
     found: dict[str, Scenario] = {}
     for name in names:
         fitting = select(expansion, name) or [pick(expansion, name)]  # raises with a suggestion

@@ -96,11 +96,11 @@ def seeds_of(seed: int | list[int | None] | None, count: int) -> list[int | None
     if seed is None:
         return [None] * count
     if isinstance(seed, int | np.integer):
-        found: list[int | None] = [int(seed) + k for k in range(count)]
+        seeds: list[int | None] = [int(seed) + k for k in range(count)]
     else:
-        found = [None if s is None else int(s) for s in seed]
-    if len(found) != count:
-        raise InputError(f"{len(found)} seeds for {count} worlds")
-    if any(s is not None and s < 0 for s in found):
+        seeds = [None if s is None else int(s) for s in seed]
+    if len(seeds) != count:
+        raise InputError(f"{len(seeds)} seeds for {count} worlds")
+    if any(s is not None and s < 0 for s in seeds):
         raise InputError("seeds must not be negative")
-    return found
+    return seeds

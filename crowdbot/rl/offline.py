@@ -77,17 +77,19 @@ def run_episode(run: Path, registry: Registry) -> RunEpisode:
 class _Reader:
     """Cuts a run into steps."""
 
-    def __init__(self, run: Path, plan: Blueprint, registry: Registry, found: Trajectories) -> None:
-        if found.robot is None:
+    def __init__(
+        self, run: Path, plan: Blueprint, registry: Registry, trajectories: Trajectories
+    ) -> None:
+        if trajectories.robot is None:
             raise InputError(f"{run}: the recording has no robot")
-        self._plan, self._registry, self._found = plan, registry, found
-        self._robot: RobotTrack = found.robot
+        self._plan, self._registry, self._found = plan, registry, trajectories
+        self._robot: RobotTrack = trajectories.robot
         step = plan.period * TICK
-        count = int((found.t[-1] - found.t[0]) / step + _SHORTER)
+        count = int((trajectories.t[-1] - trajectories.t[0]) / step + _SHORTER)
         if count < 1:
             raise InputError(f"{run}: the recording has no whole step of {step:g} s")
-        self._at = found.t[0] + step * np.arange(count + 1)
-        self._rows = _nearest(found.t, self._at)
+        self._at = trajectories.t[0] + step * np.arange(count + 1)
+        self._rows = _nearest(trajectories.t, self._at)
         self._given = self._commands(run / RECORDING)
         self._context = LearningContext(
             worlds=1, limits=plan.models[0].limits, body=robot_body(plan.models[0]), step=step

@@ -131,9 +131,9 @@ class NavVectorEnv(VectorEnv):
             InputError: an action has a wrong shape or is not finite, or `reset` was not called.
         """
         given = np.asarray(actions, np.float64)
-        wanted = self.action_space.shape
-        if given.shape != wanted:
-            raise InputError(f"actions have shape {wanted}, not {given.shape}")
+        shape = self.action_space.shape
+        if given.shape != shape:
+            raise InputError(f"actions have shape {shape}, not {given.shape}")
         if not self._begun:
             raise InputError("call reset() first: it begins the episodes")
         again = self._ended.copy()

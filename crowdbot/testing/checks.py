@@ -65,12 +65,12 @@ def checks_for(
     Args:
         registry: the other components; default: the installed ones.
     """
-    found = []
+    checks = []
     for check in checks_of(component):
         bound = bind(check, component, registry)
         reason = component.exceptions.get(check.__name__)
-        found.append((check.__name__, bound if reason is None else partial(_fails, bound, reason)))
-    return found
+        checks.append((check.__name__, bound if reason is None else partial(_fails, bound, reason)))
+    return checks
 
 
 def bind(check: Check, component: Component[Any], registry: Registry | None) -> Callable[[], None]:

@@ -44,12 +44,12 @@ def check_commanded_motion(component: Component[Any], registry: Registry | None 
 def commands_for(model: RobotModel) -> list[Command]:
     """Return one command for each direction in which a robot can move."""
     limits = model.limits
-    found = [Command(min(_SPEED, limits.v_max), 0.0), Command(0.0, min(_RATE, limits.w_max))]
+    commands = [Command(min(_SPEED, limits.v_max), 0.0), Command(0.0, min(_RATE, limits.w_max))]
     if limits.v_min < 0.0:
-        found.append(Command(max(-_SPEED, limits.v_min), 0.0))
+        commands.append(Command(max(-_SPEED, limits.v_min), 0.0))
     if limits.vy_max:
-        found.append(Command(0.0, 0.0, min(_SPEED, limits.vy_max)))
-    return found
+        commands.append(Command(0.0, 0.0, min(_SPEED, limits.vy_max)))
+    return commands
 
 
 def assert_moves(model: RobotModel, mode: str, command: Command) -> None:
@@ -89,12 +89,12 @@ def drive(model: RobotModel, mode: str, command: Command, seconds: float) -> lis
     simulator = Simulator(builder.Build())
     context = simulator.get_mutable_context()
     robot.place(context, Pose(0.0, 0.0, 0.0))
-    wanted = source.get_mutable_source_value(source.GetMyMutableContextFromRoot(context))
+    source_value = source.get_mutable_source_value(source.GetMyMutableContextFromRoot(context))
     states = []
     for tick in range(round(seconds / TICK) + 1):
         share = min(1.0, tick * TICK / (0.5 * _SETTLE))
         v, w, vy = (share * x for x in command)
-        wanted.set_value(np.array(robot.desire(v, w, vy)))
+        source_value.set_value(np.array(robot.desire(v, w, vy)))
         simulator.AdvanceTo(tick * TICK)
         mine = robot.state.GetMyContextFromRoot(context)
         port = robot.state.GetOutputPort(ports.ROBOT_STATE)

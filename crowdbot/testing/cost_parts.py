@@ -39,10 +39,10 @@ def bases_of(cost: CompiledCost, view: CrowdView, velocities: Array) -> Array:
         velocities: (N, S, 2), m/s.
     """
     costs = WeightedCosts([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
-    found = np.zeros(velocities.shape[:2])
+    bases = np.zeros(velocities.shape[:2])
     for i, agent in _each_agent(costs, view):
-        _fill_bases(agent, costs.functions, costs.weights, velocities[i], found[i])
-    return found
+        _fill_bases(agent, costs.functions, costs.weights, velocities[i], bases[i])
+    return bases
 
 
 def stops_at_budget(cost: CompiledCost, view: CrowdView, velocities: Array) -> str:

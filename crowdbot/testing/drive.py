@@ -85,15 +85,15 @@ def sensors_for(needs: Sequence[str] | None, registry: Registry) -> dict[str, An
     Raises:
         SkipTest: a need is the name of a sensor on a particular robot.
     """
-    found = {}
+    sensors = {}
     for need in ("lidar",) if needs is None else needs:
         if need == "odometry":
             continue
         made = _answering(need, registry)
         if made is None:
             raise SkipTest(f"no sensor is installed whose kind or category is '{need}'")
-        found[need] = made
-    return found
+        sensors[need] = made
+    return sensors
 
 
 def _answering(need: str, registry: Registry) -> Any:
@@ -217,14 +217,14 @@ class Driven:
         )
 
 
-def _slewed(now: Command, wanted: Command, limits: RobotLimits) -> Command:
+def _slewed(now: Command, target: Command, limits: RobotLimits) -> Command:
     def step(a: float, b: float, most: float) -> float:
         return a + min(most / RATE, max(-most / RATE, b - a))
 
     return Command(
-        step(now.v, wanted.v, limits.a_max),
-        step(now.w, wanted.w, limits.alpha_max),
-        step(now.vy, wanted.vy, limits.a_max),
+        step(now.v, target.v, limits.a_max),
+        step(now.w, target.w, limits.alpha_max),
+        step(now.vy, target.vy, limits.a_max),
     )
 
 

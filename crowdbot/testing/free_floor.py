@@ -117,7 +117,7 @@ def viewpoints(parts: EnvironmentParts) -> list[tuple[float, float]]:
 
 def seen_sides(parts: EnvironmentParts, x: float, y: float) -> dict[int, bool]:
     """Return row of each wall visible from a point -> True if its left side is visible."""
-    found: dict[int, bool] = {}
+    sides: dict[int, bool] = {}
     angles = (np.arange(_BEAMS) + 0.5) * (2.0 * math.pi / _BEAMS)
     point = np.array([[x, y]])
     for angle in angles.tolist():
@@ -125,8 +125,8 @@ def seen_sides(parts: EnvironmentParts, x: float, y: float) -> dict[int, bool]:
         if len(distances) and np.isfinite(distances.min()):
             s = int(np.argmin(distances))
             wall = parts.walls[s]
-            found[s] = bool(_left_of(point, wall[:2], wall[2:])[0] > 0.0)
-    return found
+            sides[s] = bool(_left_of(point, wall[:2], wall[2:])[0] > 0.0)
+    return sides
 
 
 def _along(walls: Array, x: float, y: float, c: float, s: float) -> Array:

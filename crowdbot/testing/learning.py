@@ -144,7 +144,7 @@ def _rewards(
 
 def _sights(worlds: int) -> list[RobotInputs]:
     """Five times: free, walls near, people near and far, no one, a new episode in between."""
-    rng, found = np.random.default_rng(3), []
+    rng, sights = np.random.default_rng(3), []
     for step in range(5):
         people = rng.uniform(-8.0, 8.0, (worlds, 12, 5))
         people[:, :, 4] = 0.3
@@ -153,7 +153,7 @@ def _sights(worlds: int) -> list[RobotInputs]:
         ranges[rng.random((worlds, _BEAMS)) < 0.5] = np.inf
         fresh = np.full(worlds, step == 0)
         fresh[1] = step in (0, 3)
-        found.append(
+        sights.append(
             RobotInputs(
                 fresh=fresh,
                 stepped=np.full(worlds, step > 0),
@@ -164,15 +164,15 @@ def _sights(worlds: int) -> list[RobotInputs]:
                 people=people[:, : 0 if step == 4 else 12],
             )
         )
-    return found
+    return sights
 
 
 def _changes(worlds: int) -> list[StepChange]:
-    rng, found = np.random.default_rng(4), []
+    rng, changes = np.random.default_rng(4), []
     for step in range(4):
         gap = rng.uniform(-0.1, 3.0, worlds)
         gap[0] = np.inf if step == 0 else gap[0]
-        found.append(
+        changes.append(
             StepChange(
                 progress=rng.uniform(-0.1, 0.1, worlds),
                 distance=rng.uniform(0.0, 30.0, worlds),
@@ -188,7 +188,7 @@ def _changes(worlds: int) -> list[StepChange]:
                 before=np.zeros((worlds, 3)),
             )
         )
-    return found
+    return changes
 
 
 def _only(given: Any, w: int) -> Any:

@@ -268,10 +268,10 @@ def _each_command(world: World, change: Callable[[Commands], Commands] | None) -
 
 
 # --------------------------------------------------------------------- assertions
-def _assert_well_formed(component: Component[Any], found: Scored) -> None:
+def _assert_well_formed(component: Component[Any], scored: Scored) -> None:
     declared = tuple(metric_of(component).variants)
-    assert tuple(found) == declared, f"scored {', '.join(found)}, declared {', '.join(declared)}"
-    for variant, one in found.items():
+    assert tuple(scored) == declared, f"scored {', '.join(scored)}, declared {', '.join(declared)}"
+    for variant, one in scored.items():
         _assert_numbers(one)
         _assert_as_declared(component, one)
         if one.value is not None:

@@ -320,7 +320,7 @@ def _copy_of(info: SensorInfo) -> SensorInfo:
 
 
 def _assert_reading(name: str, info: SensorInfo, values: Array) -> None:
-    wanted = np.float32 if info.camera is not None else np.float64
-    assert values.dtype == wanted, f"{name}: returned {values.dtype}"
+    dtype = np.float32 if info.camera is not None else np.float64
+    assert values.dtype == dtype, f"{name}: returned {values.dtype}"
     assert values.shape == info.shape, f"{name}: {values.shape}, info says {info.shape}"
     assert not np.any(np.isnan(values)), f"{name}: {np.count_nonzero(np.isnan(values))} are NaN"

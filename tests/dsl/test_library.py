@@ -52,7 +52,7 @@ def test_pick_more_than_one(challenge: Expansion, wanted: str | None) -> None:
 def test_pick_unknown_lists_near_ids(challenge: Expansion) -> None:
     with pytest.raises(UnknownNameError, match="did you mean 'in-d0125-slow-c01-r") as caught:
         pick(challenge, "in-d0125-slow-c01-r03")
-    assert caught.value.what == "scenario"
+    assert caught.value.kind == "scenario"
 
 
 def test_an_exact_id_beats_longer_ones(challenge: Expansion) -> None:

@@ -32,11 +32,11 @@ def adversary_lines(results: Results, seeing: Collection[str]) -> list[dict[str,
     return [_line(found) for found in rank(Table(results), pairs)]
 
 
-def _line(found: Ranked) -> dict[str, Any]:
+def _line(ranked: Ranked) -> dict[str, Any]:
     line: dict[str, Any] = {
-        "adversary": found.planner, "careful": found.other, "standing": found.standing,
+        "adversary": ranked.planner, "careful": ranked.other, "standing": ranked.standing,
     }  # fmt: skip
-    for aspect, one in found.aspects.items():
+    for aspect, one in ranked.aspects.items():
         line[aspect] = {
             "metric": f"{one.metric}.{one.variant}", "difference": one.difference.value,
             "low": one.difference.low, "high": one.difference.high, "verdict": one.verdict,

@@ -98,8 +98,8 @@ def _documentation(owner: Plugin) -> str:
         return ""
     pairs = [entry.partition(",") for entry in listed or ()]
     urls = {label.strip().lower(): url.strip() for label, _, url in pairs}
-    wanted = ("documentation", "docs", "homepage", "source", "repository")
-    return next((urls[label] for label in wanted if label in urls), "")
+    labels = ("documentation", "docs", "homepage", "source", "repository")
+    return next((urls[label] for label in labels if label in urls), "")
 
 
 def _label(metric: MetricComponent[Any]) -> dict[str, Any]:

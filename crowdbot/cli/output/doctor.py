@@ -61,13 +61,13 @@ def _packages() -> Iterator[DoctorFinding]:
 
 def _extras() -> dict[str, str]:
     """Return distribution -> extra of what crowdbot can do without."""
-    found = dict[str, str]()
+    extras = dict[str, str]()
     for text in requires("crowdbot") or ():
         extra = re.search(r"extra == ['\"]([\w-]+)", text)
         name = re.match(r"[\w.-]+", text)
         if extra and name:
-            found.setdefault(name[0], extra[1])
-    return found
+            extras.setdefault(name[0], extra[1])
+    return extras
 
 
 def _version(name: str) -> str:

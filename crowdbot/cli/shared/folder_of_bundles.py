@@ -84,14 +84,14 @@ def read_bundles(
         if entry.doubt:
             say(f"warning: {entry.doubt}", err=True)
     rounds = {suite.suite_id: suite.round for suite in suites}
-    wanted = [e for e in entries if not rounds or e.manifest.edition.suite in rounds]
+    chosen = [e for e in entries if not rounds or e.manifest.edition.suite in rounds]
     names = ", ".join(rounds)
-    if entries and not wanted:
+    if entries and not chosen:
         raise InputError(f"{folder}: no bundle of {names} there")
-    left_out |= {e.path.name: f"it is not of {names}" for e in entries if e not in wanted}
+    left_out |= {e.path.name: f"it is not of {names}" for e in entries if e not in chosen}
     if rounds:
-        wanted = [e.in_round(rounds[e.manifest.edition.suite]) for e in wanted]
-    kept, apart = set_apart(wanted, accept)
+        chosen = [e.in_round(rounds[e.manifest.edition.suite]) for e in chosen]
+    kept, apart = set_apart(chosen, accept)
     left_out = dict(sorted((left_out | apart).items()))
     for name, why in left_out.items():
         say(f"warning: {name} is left out: {why}", err=True)

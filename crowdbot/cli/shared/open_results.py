@@ -47,45 +47,45 @@ def open_results(root: Path, altered: bool, metrics: Sequence[str] = ()) -> Resu
     from crowdbot.core.results.score_columns import metrics_of
     from crowdbot.core.statistics.groups import check_scored
 
-    found = Results.open(root)
-    kept = found.without_altered()
-    if altered or len(kept.runs) == len(found.runs):
-        return found if altered else kept
-    changes = dict.fromkeys(run.changes for run in found.runs if run.changes)
+    results = Results.open(root)
+    kept = results.without_altered()
+    if altered or len(kept.runs) == len(results.runs):
+        return results if altered else kept
+    changes = dict.fromkeys(run.changes for run in results.runs if run.changes)
     named = "; ".join(list(changes)[:_SHOWN]) + ("; …" if len(changes) > _SHOWN else "")
-    lost = plural(len(found.runs) - len(kept.runs), "run")
+    lost = plural(len(results.runs) - len(kept.runs), "run")
     message = f"{lost} of altered scenarios left out ({named}): --altered includes them"
     say(message, err=True)
     for metric in metrics:
-        check_scored(metrics_of(found.scores), metric)
+        check_scored(metrics_of(results.scores), metric)
     return kept
 
 
-def by_suite(found: Results) -> dict[str, Results]:
+def by_suite(results: Results) -> dict[str, Results]:
     """Return suite -> its results, in order; each change to a scenario makes a suite of its own."""
     from crowdbot.core.results.score_columns import of_runs
 
     parts = {}
-    for suite in found.suites:
-        runs = tuple(run for run in found.runs if run.suite == suite)
+    for suite in results.suites:
+        runs = tuple(run for run in results.runs if run.suite == suite)
         parts[suite] = replace(
-            found,
+            results,
             runs=runs,
-            scores=of_runs(found.scores, {run.run_id for run in runs}),
-            failures=tuple(f for f in found.failures if f.suite == suite),
+            scores=of_runs(results.scores, {run.run_id for run in runs}),
+            failures=tuple(f for f in results.failures if f.suite == suite),
         )
     return parts
 
 
-def of_each_suite(found: Results, look: Callable[[Results], T]) -> dict[str, T]:
+def of_each_suite(results: Results, look: Callable[[Results], T]) -> dict[str, T]:
     """Return suite -> result of a function for its results; stderr names suites left out.
 
     Raises:
         CrowdbotError: the first suite's, if there is something wrong with all of them.
     """
-    parts = by_suite(found)
+    parts = by_suite(results)
     if len(parts) < 2:
-        return {next(iter(parts), ""): look(found)}
+        return {next(iter(parts), ""): look(results)}
     seen: dict[str, T] = {}
     errors: dict[str, CrowdbotError] = {}
     for suite, part in parts.items():
@@ -110,12 +110,12 @@ def named_by_suite(found: Mapping[str, Iterable[dict[str, Any]]]) -> list[dict[s
     ]
 
 
-def with_scales(found: Results) -> Results:
+def with_scales(results: Results) -> Results:
     """Return results with the installed metrics' scales."""
     from crowdbot.cli.shared.options import installed
     from crowdbot.core.scoring.score_scale import score_scales
 
-    return replace(found, scales=score_scales(installed(None, False)))
+    return replace(results, scales=score_scales(installed(None, False)))
 
 
 def suite_id(suite: str, registry: Registry) -> str:

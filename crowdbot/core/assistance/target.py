@@ -118,17 +118,23 @@ def _target(
 
 
 def _rows(
-    scenario: Scenario, parts: EnvironmentParts, people: Realisation, robot: str, who: WhichPerson
+    scenario: Scenario,
+    parts: EnvironmentParts,
+    people: Realisation,
+    robot: str,
+    selection: WhichPerson,
 ) -> NDArray[np.int64]:
     """Return rows of the people that are meant, drawn from the crowd's seed if need be."""
-    if who.agent is not None:
-        return np.flatnonzero(people.id == who.agent)
-    if who.group is not None:
+    if selection.agent is not None:
+        return np.flatnonzero(people.id == selection.agent)
+    if selection.group is not None:
         explicit = {a.id for a in scenario.crowd.agents} if scenario.crowd else set[int]()
         named = np.isin(people.id, sorted(explicit))
-        return np.flatnonzero(named & (people.group == who.group))
+        return np.flatnonzero(named & (people.group == selection.group))
     assert scenario.crowd is not None  # checked on validation
-    source = f"spawn {who.spawn}" if who.spawn is not None else f"stream {who.stream}"
+    source = (
+        f"spawn {selection.spawn}" if selection.spawn is not None else f"stream {selection.stream}"
+    )
     ids = np.array(from_source(scenario, parts, source), np.int64)
     found = np.flatnonzero(np.isin(people.id, ids) & (people.start_time == 0.0))
     if not len(found):
@@ -137,7 +143,7 @@ def _rows(
     rng = np.random.default_rng(stream_seed(seed.root, seed.key, f"task.person.{robot}"))
     drawn = found[int(rng.integers(len(found)))]
     group = int(people.group[drawn])
-    alone = not who.whole_group or group < 0
+    alone = not selection.whole_group or group < 0
     return np.asarray(found[found == drawn] if alone else found[people.group[found] == group])
 
 

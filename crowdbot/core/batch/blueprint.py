@@ -107,10 +107,10 @@ def blueprint(scenario: Scenario, registry: Registry, sensors: Sequence[str]) ->
         models.append(model)
         tasks.append(context.task)
         tables.append(robot_table(model, parts, np.asarray(context.task.goal_zone)))
-        wanted = _chosen(scenario, k, robot.sensors, sensors)
-        built = build_sensors(registry, robot.model_copy(update={"sensors": wanted}), context)
+        sensor_names = _chosen(scenario, k, robot.sensors, sensors)
+        built = build_sensors(registry, robot.model_copy(update={"sensors": sensor_names}), context)
         for name, sensor in built.items():
-            spec: Any = at_link(wanted[name], model)
+            spec: Any = at_link(sensor_names[name], model)
             own = SeenSensor(name=name, robot=k, spec=spec, info=sensor.info(), sensor=sensor)
             _check_distances(own, f"{scenario.id}: sensor '{name}' of robot '{called}'")
             seen.append(own)
@@ -127,14 +127,14 @@ def blueprint(scenario: Scenario, registry: Registry, sensors: Sequence[str]) ->
     )
 
 
-def _chosen(scenario: Scenario, k: int, own: Any, wanted: Sequence[str]) -> dict[str, Any]:
+def _chosen(scenario: Scenario, k: int, own: Any, names: Sequence[str]) -> dict[str, Any]:
     """Return the specs of the sensors that are wanted, by name or category.
 
     Raises:
         InputError: there is no such sensor.
     """
     robot, found = list(scenario.robots)[k], {}
-    for name in wanted:
+    for name in names:
         fitting = {n: s for n, s in own.items() if name in (n, _category(s))}
         if not fitting:
             known = ", ".join(f"'{n}' ({_category(s)})" for n, s in own.items()) or "none"

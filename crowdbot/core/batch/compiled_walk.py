@@ -171,18 +171,18 @@ def _steer(
     ordered: Rows[DiscRecord], scratch: tuple[Indices, Mask, Array, Array, Array],
 ) -> None:  # fmt: skip
     """Change what the members of a group want, as `SteeringParts.steer`."""
-    orders, decides, heading, wanted, nothing = scratch
+    orders, decides, heading, target, nothing = scratch
     count = sort_people(
         position, velocity, goal, traits, present, members, robots, nothing[:0, :3], nothing[0],
         True, discs, ordered, orders, heading, decides,
     )  # fmt: skip
     for i in range(position.shape[0]):
-        wanted[i, 0], wanted[i, 1] = people[i].ax, people[i].ay
+        target[i, 0], target[i, 1] = people[i].ax, people[i].ay
     steer_among_discs(
-        parts, ordered[:count], orders[2], heading, decides, velocity, relaxation, wanted
+        parts, ordered[:count], orders[2], heading, decides, velocity, relaxation, target
     )
     for i in range(position.shape[0]):
         if decides[i]:
-            limit, size = traits[2, i], math.hypot(wanted[i, 0], wanted[i, 1])
+            limit, size = traits[2, i], math.hypot(target[i, 0], target[i, 1])
             share = min(1.0, limit / max(size, limit))
-            people[i].ax, people[i].ay = wanted[i, 0] * share, wanted[i, 1] * share
+            people[i].ax, people[i].ay = target[i, 0] * share, target[i, 1] * share

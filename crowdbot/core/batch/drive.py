@@ -39,8 +39,8 @@ def _remainder(angle: float) -> float:
 
 
 @kernel
-def _slew(now: float, wanted: float, step: float) -> float:
-    return now + min(step, max(-step, wanted - now))
+def _slew(now: float, target: float, step: float) -> float:
+    return now + min(step, max(-step, target - now))
 
 
 @inline_kernel

@@ -132,11 +132,11 @@ def _list_problems(manifest: Manifest) -> Iterator[str]:
             yield f"two runs have the same {field}"
     if len({(r.scenario, r.seed) for r in manifest.runs}) < len(manifest.runs):
         yield "a run is listed twice"
-    wanted = manifest.edition.scenarios * len(manifest.seeds)
-    if len(manifest.runs) + len(manifest.missing) != wanted:
+    expected = manifest.edition.scenarios * len(manifest.seeds)
+    if len(manifest.runs) + len(manifest.missing) != expected:
         lists = f"it lists {plural(len(manifest.runs), 'run')}"
         lists += f", and {len(manifest.missing)} as missing" if manifest.missing else ""
-        yield f"{lists}; the edition has {wanted}"
+        yield f"{lists}; the edition has {expected}"
     for run in manifest.runs:
         if run.seed not in manifest.seeds:
             yield f"{run.scenario[:200]} seed-{run.seed} is not a run of the manifest's seeds"
@@ -169,8 +169,8 @@ def _place_problems(run: ClaimedRun, scenario: Scenario, axes: Mapping[str, str]
     """
     record, crowd = run.record, scenario.crowd
     if record.axes != dict(axes):
-        labels, wanted = _labels(record.axes), _labels(dict(axes))
-        yield f"its axes are {labels}; the scenario's are {wanted}"
+        labels, expected = _labels(record.axes), _labels(dict(axes))
+        yield f"its axes are {labels}; the scenario's are {expected}"
     claimed = record.crowd
     same = record.versions.get("crowdbot") == metadata.version("crowdbot")
     if same and claimed is not None and claimed != ("" if crowd is None else fingerprint(crowd)):

@@ -57,7 +57,7 @@ def edition_problems(manifest: Manifest, expansion: Expansion) -> Iterator[str]:
     """Yield claims of a manifest about its edition that are false."""
     edition, name = manifest.edition, expansion.suite_id
     lock = lock_of(expansion)
-    wanted = {
+    expected = {
         "suite": name,
         "title": expansion.title,
         "lock": content_hash(lock) if lock else "",
@@ -65,7 +65,7 @@ def edition_problems(manifest: Manifest, expansion: Expansion) -> Iterator[str]:
         "rules": RULES,
         "handed_in": expansion.round.planners if expansion.round else "any",
     }
-    for key, value in wanted.items():
+    for key, value in expected.items():
         packed = getattr(edition, key)
         if packed != value:
             field = _FIELDS.get(key, key)

@@ -50,13 +50,13 @@ def _contradictions(
             name: [replace(found[metric, variant], variant=variant)]
             for name, found in by_robot.items()
         }
-        wanted = fleet_scores(own)[0]
-        if score.status != wanted.status or not all(
+        expected = fleet_scores(own)[0]
+        if score.status != expected.status or not all(
             _equal(a, b)
             for a, b in (
-                (score.value, wanted.value),
-                (score.lower, wanted.lower),
-                (score.upper, wanted.upper),
+                (score.value, expected.value),
+                (score.lower, expected.lower),
+                (score.upper, expected.upper),
             )
         ):
             yield f"{metric}.{variant} of the fleet is not the mean over its robots"

@@ -50,9 +50,9 @@ def _one(planner: Mapping[str, Any]) -> Iterator[str]:
 def _names(planner: Mapping[str, Any], kind: str) -> Iterator[str]:
     """Yield names under which it would pass for another planner."""
     policy = _POLICY.fullmatch(kind)
-    wanted = policy[1] if policy else kind.rpartition(":")[2]
-    name, label = planner.get("name", wanted), planner.get("label", wanted)
-    if name != wanted:
-        yield f"its name is {str(name)[:80]!a}, but it is {wanted[:80]!a}"
-    elif label != wanted and not str(label).startswith(f"{wanted}+"):
-        yield f"its label is {str(label)[:80]!a}, but it is {wanted[:80]!a}"
+    expected = policy[1] if policy else kind.rpartition(":")[2]
+    name, label = planner.get("name", expected), planner.get("label", expected)
+    if name != expected:
+        yield f"its name is {str(name)[:80]!a}, but it is {expected[:80]!a}"
+    elif label != expected and not str(label).startswith(f"{expected}+"):
+        yield f"its label is {str(label)[:80]!a}, but it is {expected[:80]!a}"

@@ -34,13 +34,13 @@ def recording_problems(archive: Archive, runs: Sequence[ClaimedRun]) -> Iterator
             continue
         yield from (f"{name}: {text}" for text in _run_problems(archive, run, name))
         for reference, place in reference_members(run).items():
-            wanted = run.record.reference_hashes.get(reference)
+            expected = run.record.reference_hashes.get(reference)
             if place not in archive.names:
                 yield f"{run.name}: its {reference} is not there: {place[:200]}"
-            elif wanted is None or used.setdefault(place, wanted) != wanted:
+            elif expected is None or used.setdefault(place, expected) != expected:
                 yield f"{run.name}: {files.RECORD} has no right hash of its {reference}"
-    for place, wanted in sorted(used.items()):
-        yield from (f"{place}: {text}" for text in _reference_problems(archive, place, wanted))
+    for place, expected in sorted(used.items()):
+        yield from (f"{place}: {text}" for text in _reference_problems(archive, place, expected))
     yield from _strangers(archive, set(used))
 
 
@@ -72,22 +72,22 @@ def _unpacked(archive: Archive, name: str) -> Iterator[Path]:
             raise InputError(str(error).removeprefix(f"{file}: ")) from None
 
 
-def ownership_problems(run: ClaimedRun, found: RecordedRun) -> Iterator[str]:
+def ownership_problems(run: ClaimedRun, recorded_run: RecordedRun) -> Iterator[str]:
     """Yield reasons why a recording does not belong to a run."""
-    header, record = found.header, run.record
+    header, record = recorded_run.header, run.record
     hashes = provenance.recording_hashes(record)
     if header.scenario != run.entry.scenario:
         yield f"it is of scenario '{header.scenario[:100]}', not of {run.entry.scenario}"
-    for key, wanted in hashes.items():
+    for key, expected in hashes.items():
         claimed = header.hashes.get(key)
         if claimed is None:
             yield f"it does not say of which {key} it is"
-        elif claimed != wanted:
-            yield f"it is of another {key}: {claimed[:40]} instead of {wanted[:40]}"
-    if found.trajectory != run.entry.trajectory:
+        elif claimed != expected:
+            yield f"it is of another {key}: {claimed[:40]} instead of {expected[:40]}"
+    if recorded_run.trajectory != run.entry.trajectory:
         yield "what happens in it has another hash than the run: it is the recording of another one"
-    if not found.complete:
-        yield f"it is cut: it can be read until {found.until:g} s"
+    if not recorded_run.complete:
+        yield f"it is cut: it can be read until {recorded_run.until:g} s"
 
 
 def _run_problems(archive: Archive, run: ClaimedRun, name: str) -> Iterator[str]:
@@ -133,7 +133,7 @@ def _is_record_of(run: ClaimedRun, content: bytes) -> bool:
     return found in (plain, {**plain, "axes": {}})
 
 
-def _reference_problems(archive: Archive, name: str, wanted: str) -> Iterator[str]:
+def _reference_problems(archive: Archive, name: str, expected: str) -> Iterator[str]:
     try:
         found = read_member(archive, name)
         record = f"{posixpath.dirname(name)}/{files.RECORD}"
@@ -141,7 +141,7 @@ def _reference_problems(archive: Archive, name: str, wanted: str) -> Iterator[st
     except InputError as error:
         yield str(error).removeprefix(f"{archive.path}: ")
         return
-    if found.trajectory != wanted:
+    if found.trajectory != expected:
         yield "what happens in it has another hash than the runs say"
     if not claimed.id() == claimed.run_id == found.header.hashes.get("run"):
         yield f"its run_id is not the hash of what {files.RECORD} says"

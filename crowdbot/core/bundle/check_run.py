@@ -63,10 +63,10 @@ def declared_problems(run: ClaimedRun, registry: Registry) -> Iterator[str]:
             yield f"{score.metric} has no variant '{score.variant[:60]}'"
             continue
         claimed = (score.symbol, score.category, score.unit, score.better)
-        wanted = (metric.symbol, metric.score_category, declared.unit, declared.better)
-        if claimed != wanted:
+        expected = (metric.symbol, metric.score_category, declared.unit, declared.better)
+        if claimed != expected:
             yield f"{score.metric}.{score.variant} is {', '.join(claimed)} there, here " \
-                  f"{', '.join(wanted)}"  # fmt: skip
+                  f"{', '.join(expected)}"  # fmt: skip
         low, high = declared.invariants.minimum, declared.invariants.maximum
         if score.value is not None and not low - _ROUNDING <= score.value <= high + _ROUNDING:
             yield f"{score.metric}.{score.variant} is {score.value:g}; it lies between " \
@@ -124,8 +124,8 @@ def _ending_problems(run: ClaimedRun) -> Iterator[str]:
         if (score.metric, score.status) != ("success", "ok") or robot not in arrived:
             continue
         if score.value != arrived[robot]:
-            whose = f"success of {robot}" if robot else "success"
-            yield f"its {whose} is {score.value:g}, which its time of arrival contradicts"
+            claim_name = f"success of {robot}" if robot else "success"
+            yield f"its {claim_name} is {score.value:g}, which its time of arrival contradicts"
 
 
 def _excused_problems(record: RunRecord) -> Iterator[str]:

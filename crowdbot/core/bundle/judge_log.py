@@ -48,7 +48,7 @@ def read_log(path: Path, trusted: Collection[str]) -> list[LogLine]:
     text = input_text(path)
     if text and not text.endswith("\n"):
         raise InputError(f"{path}: the last line is cut off")
-    found: list[LogLine] = []
+    lines: list[LogLine] = []
     for number, line in enumerate(text.splitlines(), 1):
         where = f"{path}:{number}"
         try:
@@ -57,14 +57,14 @@ def read_log(path: Path, trusted: Collection[str]) -> list[LogLine]:
             raise InputError(f"{where}: {error}") from None
         if not isinstance(document, dict) or any(k not in document for k in _REQUIRED):
             raise InputError(f"{where}: not a line of a judge's log")
-        before = found[-1].sha256 if found else BEGIN
+        before = lines[-1].sha256 if lines else BEGIN
         if document["line"] != number or document["previous"] != before:
             raise InputError(f"{where}: a line before it was changed, removed or inserted")
         if problem := signature_problem(document, trusted):
             raise InputError(f"{where}: {problem}")
         digest = hashlib.sha256(line.encode()).hexdigest()
-        found.append(LogLine(str(document["event"]), document, digest))
-    return found
+        lines.append(LogLine(str(document["event"]), document, digest))
+    return lines
 
 
 def append(path: Path, lines: list[LogLine], event: str, **about: Any) -> None:

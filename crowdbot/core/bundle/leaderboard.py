@@ -84,14 +84,14 @@ def _mains(
 ) -> list[dict[str, str]]:
     """Return the four main scores beside an entry's name; ``sort`` is the plain number."""
     ranked = [e.name for e in table.entries if e.ranked]
-    found = []
+    mains = []
     for name, row in zip(names, rows, strict=True):
         cell = row["cells"][ranked.index(entry.name)] if entry.name in ranked else {}
-        found.append({
+        mains.append({
             "name": name, "value": cell.get("value", NOTHING),
             "interval": cell.get("interval", ""), "sort": cell.get("sort", ""),
         })  # fmt: skip
-    return found
+    return mains
 
 
 def _runs(entry: LeaderboardEntry, here: Path) -> list[dict[str, str]]:

@@ -122,7 +122,7 @@ def _runs(submission: Submission, expansion: Expansion) -> list[_CompleteRun]:
         if not labels:
             raise InputError(f"{base}: no runs of {expansion.suite_id} there")
         raise UnknownNameError("planner among the runs", submission.planner, labels)
-    found = []
+    runs = []
     for scenario in expansion.scenarios:
         folder = base / scenario.id / submission.planner
         for seed in expansion.run_seeds:
@@ -131,8 +131,8 @@ def _runs(submission: Submission, expansion: Expansion) -> list[_CompleteRun]:
             if record is not None:
                 name = PurePosixPath(place.relative_to(submission.root).as_posix())
                 axes = expansion.axes.get(scenario.id, {})
-                found.append(_CompleteRun(name, record, axes))
-    if not found:
+                runs.append(_CompleteRun(name, record, axes))
+    if not runs:
         seeds = other_seeds(submission, expansion)
         if seeds:
             raise InputError(
@@ -145,7 +145,7 @@ def _runs(submission: Submission, expansion: Expansion) -> list[_CompleteRun]:
             f"{expansion.suite_id} has it; what is there, such as {there}, was interrupted, or "
             "changed with --set"
         )
-    return found
+    return runs
 
 
 def other_seeds(submission: Submission, expansion: Expansion) -> list[int]:
@@ -172,9 +172,9 @@ def _record(place: Path) -> RunRecord | None:
 
 
 # ----------------------------------------------------------------------- checking
-def _check_fits(found: Sequence[_CompleteRun], expansion: Expansion, registry: Registry) -> None:
+def _check_fits(runs: Sequence[_CompleteRun], expansion: Expansion, registry: Registry) -> None:
     specs = {s.id: spec_of(s, registry) for s in expansion.scenarios}
-    for run in found:
+    for run in runs:
         if run.record.hashes.spec != specs[run.record.scenario]:
             raise InputError(
                 f"{run.folder} is of another state of {expansion.suite_id}: its scenario has "
@@ -182,11 +182,11 @@ def _check_fits(found: Sequence[_CompleteRun], expansion: Expansion, registry: R
             )
 
 
-def _check_alike(found: Sequence[_CompleteRun]) -> None:
+def _check_alike(runs: Sequence[_CompleteRun]) -> None:
     """Refuse a bundle of runs that cannot be compared with each other."""
-    first = found[0]
+    first = runs[0]
     for name in ("planner", "versions", "pinned"):
-        for run in found[1:]:
+        for run in runs[1:]:
             if getattr(run.record, name) != getattr(first.record, name):
                 raise InputError(
                     f"{first.folder} and {run.folder} have different '{name}' in {files.RECORD}; "
@@ -194,20 +194,20 @@ def _check_alike(found: Sequence[_CompleteRun]) -> None:
                 )
 
 
-def _check_driven(submission: Submission, found: Sequence[_CompleteRun]) -> None:
+def _check_driven(submission: Submission, runs: Sequence[_CompleteRun]) -> None:
     """Refuse a bundle of a planner that failed in every run."""
-    record, allowed = found[0].record, submission.partial or submission.failing
-    if not allowed and all(run.record.status == Ending.PLANNER_FAILED for run in found):
+    record, allowed = runs[0].record, submission.partial or submission.failing
+    if not allowed and all(run.record.status == Ending.PLANNER_FAILED for run in runs):
         raise InputError(
-            f"{submission.planner} failed in all {len(found)} runs: there is nothing to compare; "
+            f"{submission.planner} failed in all {len(runs)} runs: there is nothing to compare; "
             f"the first: {record.reason}; --partial packs them all the same"
         )
 
 
 # ------------------------------------------------------------------------ packing
-def _members(submission: Submission, found: Sequence[_CompleteRun]) -> dict[str, Path | bytes]:
+def _members(submission: Submission, runs: Sequence[_CompleteRun]) -> dict[str, Path | bytes]:
     members: dict[str, Path | bytes] = {}
-    for run in found:
+    for run in runs:
         folder = submission.root / run.folder
         names = [*_OF_A_RUN, files.RECORDING] if submission.recordings else [*_OF_A_RUN]
         members |= {f"runs/{run.folder}/{name}": folder / name for name in names}
@@ -216,7 +216,7 @@ def _members(submission: Submission, found: Sequence[_CompleteRun]) -> dict[str,
         if run.axes and not run.record.axes:  # runs made from Python have no suite
             whole = files.json_text({**run.record.document(), "axes": dict(run.axes)})
             members[f"runs/{run.folder}/{files.RECORD}"] = whole.encode()
-    members |= dict(_planner_files(submission.root, found[0].record.planner.document()))
+    members |= dict(_planner_files(submission.root, runs[0].record.planner.document()))
     for name, place in members.items():
         if isinstance(place, Path) and not place.is_file():
             raise InputError(f"{place}: missing; run {name} again")
@@ -250,11 +250,11 @@ def _references(root: Path, folder: Path, run: _CompleteRun) -> Iterator[tuple[s
 def _manifest(
     submission: Submission,
     expansion: Expansion,
-    found: Sequence[_CompleteRun],
+    runs: Sequence[_CompleteRun],
     missing: Sequence[str],
     members: Mapping[str, Path | bytes],
 ) -> Manifest:
-    first, held = found[0].record, expansion.round or Round()
+    first, held = runs[0].record, expansion.round or Round()
     lock = members.get(LOCK)
     return Manifest(
         bundle=BUNDLE,
@@ -284,7 +284,7 @@ def _manifest(
                 run_id=f.record.run_id,
                 trajectory=f.record.hashes.trajectory,
             )
-            for f in found
+            for f in runs
         ],
         members=members_of(members),
     )

@@ -128,15 +128,15 @@ def unpack_submission(sealed: Sealed, folder: Path) -> Path:
         OSError: a file cannot be written.
     """
     with _opened(sealed.path) as archive:
-        for name, wanted in sealed.about.files.items():
+        for name, sealed_file in sealed.about.files.items():
             target = folder / name
             target.parent.mkdir(parents=True, exist_ok=True)
-            _unpack(sealed.path, archive, name, wanted, target)
+            _unpack(sealed.path, archive, name, sealed_file, target)
     return folder / sealed.about.planner.partition(":")[0]
 
 
 def _unpack(
-    path: Path, archive: zipfile.ZipFile, name: str, wanted: SealedFile, target: Path
+    path: Path, archive: zipfile.ZipFile, name: str, expected: SealedFile, target: Path
 ) -> None:
     digest, size = hashlib.sha256(), 0
     try:
@@ -147,9 +147,9 @@ def _unpack(
                 out.write(chunk)
     except (KeyError, zipfile.BadZipFile, NotImplementedError, EOFError, ZlibError) as error:
         raise InputError(f"{path}: {name} is damaged or missing: {error}") from None
-    if (digest.hexdigest(), size) != (wanted.sha256, wanted.size):
+    if (digest.hexdigest(), size) != (expected.sha256, expected.size):
         raise InputError(f"{path}: {name} is not what {ABOUT} says; it was changed")
-    target.chmod(0o755 if wanted.executable else 0o644)
+    target.chmod(0o755 if expected.executable else 0o644)
 
 
 @contextmanager

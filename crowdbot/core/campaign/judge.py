@@ -92,15 +92,15 @@ def judge(setup: Judge) -> Judgement:
     path = setup.out / LOG
     own = own_public_key()
     lines = read_log(path, {own} - {""})
-    found = Judgement()
+    judgement = Judgement()
     hidden = any(scenario.hidden for scenario in expansion.scenarios)
     closed = expansion.round.problem(datetime.now(UTC)) if expansion.round else ""
     if expansion.commitment and not hidden:
         closed = closed or "not received before the draws were revealed"
-    sealed = dict(_received(setup, path, lines, found, closed))
+    sealed = dict(_received(setup, path, lines, judgement, closed))
     if hidden:
-        found.waits = True
-        return found
+        judgement.waits = True
+        return judgement
     if setup.options.place.contained and (missing := kernel_offer().missing):
         raise InputError(
             f"planners would not be contained ({missing}); --not-contained runs them all the same"
@@ -109,12 +109,12 @@ def judge(setup: Judge) -> Judgement:
     done = {str(x.document["submission"]) for x in lines if x.event in (JUDGED, _REFUSED)}
     for digest, one in sealed.items():
         if digest not in done:
-            _judge_one(setup, (expansion, lock), one, path, lines, found)
-    return found
+            _judge_one(setup, (expansion, lock), one, path, lines, judgement)
+    return judgement
 
 
 def _received(
-    setup: Judge, path: Path, lines: list[LogLine], found: Judgement, closed: str
+    setup: Judge, path: Path, lines: list[LogLine], judgement: Judgement, closed: str
 ) -> Iterator[tuple[str, Sealed]]:
     """Yield the submissions that were received in time, after logging new ones.
 
@@ -129,11 +129,11 @@ def _received(
         try:
             one = read_submission(file)
         except InputError as error:
-            found.left_out[file.name] = str(error).removeprefix(f"{file}: ")
+            judgement.left_out[file.name] = str(error).removeprefix(f"{file}: ")
             continue
         if one.sha256 not in known:
             if opened or closed:
-                found.left_out[file.name] = closed or "handed in after the draws were opened"
+                judgement.left_out[file.name] = closed or "handed in after the draws were opened"
                 continue
             about = one.about
             append(
@@ -141,7 +141,7 @@ def _received(
                 planner=about.planner, settings=about.settings, digest=about.digest,
             )  # fmt: skip
             known.add(one.sha256)
-            found.received.append(file.name)
+            judgement.received.append(file.name)
         yield one.sha256, one
 
 
@@ -169,7 +169,7 @@ def _judge_one(
     sealed: Sealed,
     path: Path,
     lines: list[LogLine],
-    found: Judgement,
+    judgement: Judgement,
 ) -> None:
     """Make the runs of one submission, pack them and log it, or log why not."""
     name = sealed.path.name
@@ -179,7 +179,7 @@ def _judge_one(
         manifest = _packed(setup, suite, sealed, state, label, bundle)
     except _LeftOutError as error:
         append(path, lines, error.event, submission=sealed.sha256, reason=str(error)[:_REASON])
-        found.left_out[name] = str(error)
+        judgement.left_out[name] = str(error)
         return
     record = _record(bundle, sealed, [f"{r.scenario} seed-{r.seed}" for r in manifest.runs])
     save_verification(bundle, record)
@@ -187,7 +187,7 @@ def _judge_one(
         path, lines, JUDGED, submission=sealed.sha256, bundle=record["sha256"],
         runs=len(manifest.runs), statuses=dict(Counter(state.statuses.values())),
     )  # fmt: skip
-    found.judged[name] = bundle
+    judgement.judged[name] = bundle
 
 
 class _LeftOutError(Exception):
@@ -233,12 +233,12 @@ def _packed(
         _LeftOutError: they cannot be packed; the next submission is judged all the same.
     """
     about = sealed.about
-    wanted = Submission(
+    submission = Submission(
         root=state.plan.out, planner=label, team=about.team, contact=about.contact, failing=True,
         recordings=setup.options.record != "none",
     )  # fmt: skip
     try:
-        return pack(wanted, *suite, setup.registry, bundle)
+        return pack(submission, *suite, setup.registry, bundle)
     except (InputError, UnknownNameError) as error:
         raise _LeftOutError(_INCOMPLETE, f"its runs cannot be packed: {error}") from error
 

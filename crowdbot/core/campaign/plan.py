@@ -144,8 +144,8 @@ class _PlanBuilder:
             )
             for scenario in suite.scenarios
         ]
-        wanted = self._campaign.sample
-        chosen = everything if wanted is None else sample(everything, wanted, suite.expansion.suite)
+        size = self._campaign.sample
+        chosen = everything if size is None else sample(everything, size, suite.expansion.suite)
         few = [id(one) for one in sample(chosen, FLOOR_SCENARIOS, suite.expansion.suite)]
         for one in chosen:
             planners = [e for e in self._planners if not e.sampled or id(one) in few]

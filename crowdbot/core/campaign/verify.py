@@ -147,15 +147,15 @@ def make_reruns(setup: RerunSetup, chosen: Sequence[ClaimedRun]) -> list[Rerun]:
     Raises:
         CrowdbotError: one cannot be simulated.
     """
-    found: list[Rerun] = []
+    reruns: list[Rerun] = []
     for claimed in chosen:
         rerun = _simulate(setup, claimed)
         elsewhere = rerun.relation == "different_platform"
-        known = any(r.repeated is not None for r in found)
+        known = any(r.repeated is not None for r in reruns)
         if rerun.relation == "different" or (elsewhere and not known):
             rerun = replace(rerun, repeated=_simulate(setup, claimed).trajectory)
-        found.append(rerun)
-    return found
+        reruns.append(rerun)
+    return reruns
 
 
 def make_fresh(
@@ -174,16 +174,16 @@ def make_fresh(
         InputError: the suite's people do not depend on a seed.
         CrowdbotError: a run cannot be simulated.
     """
-    found: list[Rerun] = []
+    reruns: list[Rerun] = []
     order = random.Random(stream_seed(seed, "order", "verify.fresh")).sample(runs, len(runs))
     for start in range(0, count, len(runs)):
         root = stream_seed(seed, str(start), "verify.people") % 2**63
         own = replace(setup, expansion=fresh_draws(suite, setup.registry, root))
-        found += [_simulate(own, run) for run in order[: count - start]]
-    people = [(f.record.hashes.realisation, f.claimed.record.hashes.realisation) for f in found]
+        reruns += [_simulate(own, run) for run in order[: count - start]]
+    people = [(f.record.hashes.realisation, f.claimed.record.hashes.realisation) for f in reruns]
     if people and all(a == b for a, b in people):
         raise InputError(f"{suite}: the people of its scenarios do not depend on the seed")
-    return found
+    return reruns
 
 
 def _simulate(setup: RerunSetup, claimed: ClaimedRun) -> Rerun:

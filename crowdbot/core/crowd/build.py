@@ -121,12 +121,12 @@ def _checked_costs(
 ) -> Callable[[Array, AgentView, Neighbours], Array]:
     def checked(candidates: Array, agent: AgentView, neighbours: Neighbours) -> Array:
         with call("evaluate"):
-            found = plain_numbers(evaluate(candidates, agent, neighbours))
-        if found.shape != (len(candidates),):
-            call.fail(f"evaluate returned shape {found.shape} for {len(candidates)} candidates")
-        if np.isnan(found).any():
-            wrong = candidates[np.isnan(found)][0].tolist()
+            costs = plain_numbers(evaluate(candidates, agent, neighbours))
+        if costs.shape != (len(candidates),):
+            call.fail(f"evaluate returned shape {costs.shape} for {len(candidates)} candidates")
+        if np.isnan(costs).any():
+            wrong = candidates[np.isnan(costs)][0].tolist()
             call.fail(f"evaluate returned NaN for {wrong}")
-        return found
+        return costs
 
     return checked

@@ -73,10 +73,10 @@ def candidates_of(policy: CrowdPolicy) -> VelocityCandidates | None:
     """
     call = _call(policy)
     with call("velocity_candidates"):
-        found = getattr(policy, "velocity_candidates", None)
-    if found is not None and not isinstance(found, VelocityCandidates):
-        call.fail(f"velocity_candidates is a {type(found).__name__}, not VelocityCandidates")
-    return found
+        candidates = getattr(policy, "velocity_candidates", None)
+    if candidates is not None and not isinstance(candidates, VelocityCandidates):
+        call.fail(f"velocity_candidates is a {type(candidates).__name__}, not VelocityCandidates")
+    return candidates
 
 
 def relaxation_time_of(policy: CrowdPolicy) -> float:

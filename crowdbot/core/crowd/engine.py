@@ -337,12 +337,12 @@ class CrowdEngine:
             decides: Any = view.decides
             if group.foreign:
                 view = immutable_fields(replace(view, **self._kept))
-            wanted = desired_acceleration(group.policy, view)
+            desired = desired_acceleration(group.policy, view)
             if self._led and np.any(group.members & self._commanded):
-                decisions.append((decides, wanted))
+                decisions.append((decides, desired))
             if self._steering is not None:
-                wanted = self._steering.steer(view, relaxation_time_of(group.policy), wanted)
-            np.copyto(rows[:, s.AX : s.AY + 1], wanted, where=decides[:, np.newaxis])
+                desired = self._steering.steer(view, relaxation_time_of(group.policy), desired)
+            np.copyto(rows[:, s.AX : s.AY + 1], desired, where=decides[:, np.newaxis])
         if self._router is not None:
             squeeze(people, self.agents.max_acceleration)
         if self._cohesion is not None and len(self._members):
@@ -351,8 +351,8 @@ class CrowdEngine:
                 self._place.boundary, self._cohesion,
             )  # fmt: skip
         self._evade(flat, people, robots, outlines)
-        for decides, wanted in decisions:  # nothing else changes what those want who are led
-            np.copyto(rows[:, s.AX : s.AY + 1], wanted, where=decides[:, np.newaxis])
+        for decides, desired in decisions:  # nothing else changes what those want who are led
+            np.copyto(rows[:, s.AX : s.AY + 1], desired, where=decides[:, np.newaxis])
 
     def _evade(self, flat: Array, people: s.People, robots: Array, outlines: Array) -> None:
         """Change desired accelerations of people who have noticed robots, under any policy."""
@@ -421,13 +421,13 @@ def _groups(
     policies: Sequence[CrowdPolicy], agents: Agents, sees_robot: NDArray[np.bool_]
 ) -> list[DecisionGroup]:
     """Groups of agents, by policy and by whether it is shown robots."""
-    found = []
+    groups = []
     for number, policy in enumerate(policies):
         for sees in (True, False):
             members = (agents.policy == number) & (sees_robot == sees)
             if np.any(members):
-                found.append(DecisionGroup(policy, members, sees, _is_foreign(policy)))
-    return found
+                groups.append(DecisionGroup(policy, members, sees, _is_foreign(policy)))
+    return groups
 
 
 def _is_foreign(policy: CrowdPolicy) -> bool:

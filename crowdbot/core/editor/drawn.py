@@ -47,11 +47,9 @@ def drawn(text: str, file: Path, registry: Registry) -> dict[str, Any]:
         aside.unlink(missing_ok=True)
 
 
-def _shown(found: Diagnostic) -> dict[str, Any]:
-    return {
-        "line": found.mark.line + 1, "column": found.mark.column + 1, "code": found.code,
-        "message": found.message, "hint": found.hint,
-    }  # fmt: skip
+def _shown(diagnostic: Diagnostic) -> dict[str, Any]:
+    fields = {name: getattr(diagnostic, name) for name in ("code", "message", "hint")}
+    return {"line": diagnostic.mark.line + 1, "column": diagnostic.mark.column + 1, **fields}
 
 
 def _scene(scenario: Scenario, registry: Registry) -> dict[str, Any]:

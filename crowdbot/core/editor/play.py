@@ -70,8 +70,8 @@ def _frames(recording: Path, robots: list[str]) -> dict[str, Any]:
     with Recording(recording) as opened:
         runs = {name: opened.trajectories(name if len(robots) > 1 else None) for name in robots}
         run = next(iter(runs.values()), None) or opened.trajectories()
-    wanted = np.arange(0.0, min(SECONDS, float(run.t[-1])) + 1e-9, 1.0 / _RATE)
-    rows = np.clip(np.searchsorted(run.t, wanted - 1e-9), 0, len(run.t) - 1)
+    times = np.arange(0.0, min(SECONDS, float(run.t[-1])) + 1e-9, 1.0 / _RATE)
+    rows = np.clip(np.searchsorted(run.t, times - 1e-9), 0, len(run.t) - 1)
     agents = run.agents
     people = [] if agents is None else _places(agents.x[rows], agents.y[rows])
     return {
@@ -87,5 +87,5 @@ def _frames(recording: Path, robots: list[str]) -> dict[str, Any]:
 
 
 def _places(x: Array, y: Array) -> list[Any]:
-    found: list[Any] = np.round(np.stack([x, y], axis=-1), 3).tolist()
-    return found
+    places: list[Any] = np.round(np.stack([x, y], axis=-1), 3).tolist()
+    return places

@@ -46,12 +46,12 @@ class GridMap:
 
 
 def grid_map(
-    found: OutlineMap, walls: Array, inside: Iterable[Point], resolution: float, below: float
+    outline: OutlineMap, walls: Array, inside: Iterable[Point], resolution: float, below: float
 ) -> GridMap:
     """Return a grid map: obstacle cells are occupied, unreachable cells are unknown.
 
     Args:
-        found: the polygons.
+        outline: the polygons.
         walls: (S, 4) outer walls, m; every cell that one touches is occupied.
         inside: positions from which the floor is reached; without any, all other cells are free.
         resolution: side of a cell, m.
@@ -61,7 +61,7 @@ def grid_map(
         InputError: there would be too many cells.
     """
     shapes = [
-        s for s, (base, _) in zip(found.obstacles, found.heights, strict=True) if base < below
+        s for s, (base, _) in zip(outline.obstacles, outline.heights, strict=True) if base < below
     ]
     everything = [*shapes, *shapely.linestrings(walls.reshape(-1, 2, 2))]
     points = [shapely.Point(p) for p in inside]

@@ -60,7 +60,7 @@ def write(path: Path, lines: Sequence[WrittenLine], scenes: Sequence[Draft]) -> 
 
 
 def _at_origin(
-    found: Diagnostic,
+    diagnostic: Diagnostic,
     path: Path,
     lines: Sequence[WrittenLine],
     scenes: Sequence[Draft],
@@ -68,12 +68,12 @@ def _at_origin(
 ) -> Diagnostic:
     """Return an error of our document as one of the file that it came from."""
     mark = default
-    if found.mark.source.file == path or found.mark.source.name == str(path):
-        line = lines[min(found.mark.line, len(lines) - 1)]
+    if diagnostic.mark.source.file == path or diagnostic.mark.source.name == str(path):
+        line = lines[min(diagnostic.mark.line, len(lines) - 1)]
         if line.scene >= 0:
             mark = _origin(line, scenes[line.scene], default)
-    message = f"as imported: {found.message}"
-    hint = found.hint if found.hint else f"in our words {found.code}"
+    message = f"as imported: {diagnostic.message}"
+    hint = diagnostic.hint if diagnostic.hint else f"in our words {diagnostic.code}"
     return Diagnostic("E402", message, mark, hint)
 
 

@@ -172,6 +172,6 @@ def _triangles(rows: NDArray[np.int64], mode: int) -> NDArray[np.int64]:
         return rows.reshape(-1, 3)
     if mode == _FAN:
         return np.column_stack([np.full(len(rows) - 2, rows[0]), rows[1:-1], rows[2:]])
-    found = np.column_stack([rows[:-2], rows[1:-1], rows[2:]])
-    found[1::2] = found[1::2][:, [1, 0, 2]]  # every other one runs the other way
-    return found
+    triangles = np.column_stack([rows[:-2], rows[1:-1], rows[2:]])
+    triangles[1::2] = triangles[1::2][:, [1, 0, 2]]  # every other one runs the other way
+    return triangles

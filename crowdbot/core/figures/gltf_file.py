@@ -54,9 +54,9 @@ class GltfFile:
             raise self.error(f"needs {', '.join(needed)}; write it without compression")
         self._buffers = [self._buffer(b, blob) for b in self.list("buffers")]
 
-    def error(self, what: str) -> InputError:
+    def error(self, problem: str) -> InputError:
         """Return an error that names this file."""
-        return InputError(f"{self._path}: {what}")
+        return InputError(f"{self._path}: {problem}")
 
     def list(self, name: str) -> list[dict[str, Any]]:
         """Return a list of the document; empty if it has none.

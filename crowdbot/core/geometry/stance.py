@@ -107,12 +107,12 @@ def wanted_direction(task: PersonTask, around: Array) -> Array:
     return np.full_like(around, 0.5 * math.pi if task.side == "left" else -0.5 * math.pi)
 
 
-def in_place(task: PersonTask, found: RelativePosition) -> Array:
+def in_place(task: PersonTask, position: RelativePosition) -> Array:
     """Return True where a robot is at its place; without a known front, any direction will do."""
-    near = np.abs(found.gap - task.distance) <= task.tolerance
-    aside = np.abs(wrapped(found.around - wanted_direction(task, found.around)))
+    near = np.abs(position.gap - task.distance) <= task.tolerance
+    aside = np.abs(wrapped(position.around - wanted_direction(task, position.around)))
     fits = np.isnan(aside) | (aside <= task.angle)
-    turned = found.turned if task.kind == "accompany" else found.bearing
+    turned = position.turned if task.kind == "accompany" else position.bearing
     if task.kind == "lead":  # the robot looks where it goes
         return np.asarray(near & fits)
     return np.asarray(near & fits & (np.isnan(turned) | (np.abs(turned) <= LOOKS_AT)))

@@ -13,12 +13,12 @@ Vectors = NDArray[np.float32]
 
 
 @kernel
-def write_bounded(found: Vectors, low: Vectors, high: Vectors, out: Vectors) -> bool:
+def write_bounded(vectors: Vectors, low: Vectors, high: Vectors, out: Vectors) -> bool:
     """Write vectors (W, N), clipped to bounds (N,); return True if all are finite."""
     finite = True
-    for w in range(found.shape[0]):
-        for n in range(found.shape[1]):
-            value = found[w, n]
+    for w in range(vectors.shape[0]):
+        for n in range(vectors.shape[1]):
+            value = vectors[w, n]
             if not math.isfinite(value):
                 finite = False
             out[w, n] = low[n] if value < low[n] else high[n] if value > high[n] else value

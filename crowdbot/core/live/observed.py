@@ -85,65 +85,67 @@ class Observed:
         found.append(OfferedTopic(str(Topic.CLOCK), self._clock.msgtype))
         return found
 
-    def messages(self, obs: Observation, wanted: Callable[[str], bool]) -> Iterator[LiveMessage]:
+    def messages(
+        self, obs: Observation, subscribed: Callable[[str], bool]
+    ) -> Iterator[LiveMessage]:
         """Yield new messages, the clock last.
 
         Args:
             obs: observation of one step.
-            wanted: function that returns True if a client listens to a topic.
+            subscribed: function that returns True if a client listens to a topic.
         """
         self._wheels.turn(obs)
         for name, reading in obs.readings.items():
             if self._shown.get(name, -1.0) < reading.stamp:
                 self._shown[name] = reading.stamp
-                yield from self._reading(name, reading, wanted)
-        yield from self._state(obs, wanted)
+                yield from self._reading(name, reading, subscribed)
+        yield from self._state(obs, subscribed)
 
-    def again(self, obs: Observation, wanted: Callable[[str], bool]) -> Iterator[LiveMessage]:
+    def again(self, obs: Observation, subscribed: Callable[[str], bool]) -> Iterator[LiveMessage]:
         """Yield the latest messages again, for clients that connected after `messages`."""
         for name, reading in obs.readings.items():
-            yield from self._reading(name, reading, wanted)
-        yield from self._state(obs, wanted)
+            yield from self._reading(name, reading, subscribed)
+        yield from self._state(obs, subscribed)
 
-    def _state(self, obs: Observation, wanted: Callable[[str], bool]) -> Iterator[LiveMessage]:
+    def _state(self, obs: Observation, subscribed: Callable[[str], bool]) -> Iterator[LiveMessage]:
         ns = self._epoch + ros.nanoseconds(obs.t)
-        if not self._odometry and wanted(_ODOM):
+        if not self._odometry and subscribed(_ODOM):
             yield LiveMessage(_ODOM, self._odom.msgtype, ns, self._odometer(ns, obs))
-        if wanted(Topic.TF):
+        if subscribed(Topic.TF):
             parts = template.stamp(ns), template.two(*obs.pose[:2]), template.turn(obs.pose.yaw)
             yield LiveMessage(str(Topic.TF), self._tf.msgtype, ns, self._tf.fill(*parts))
-        if wanted(JOINTS):
+        if subscribed(JOINTS):
             yield live_message(JOINTS, ns, self._wheels.message(ns))
-        if wanted(OBSERVATION):
+        if subscribed(OBSERVATION):
             yield live_message(OBSERVATION, ns, _observation(ns, obs, self._frame))
-        if wanted(Topic.CLOCK):
+        if subscribed(Topic.CLOCK):
             data = self._clock.fill(template.stamp(ns))
             yield LiveMessage(str(Topic.CLOCK), self._clock.msgtype, ns, data)
 
     def _reading(
-        self, name: str, reading: Reading, wanted: Callable[[str], bool]
+        self, name: str, reading: Reading, subscribed: Callable[[str], bool]
     ) -> Iterator[LiveMessage]:
         ns = self._epoch + ros.nanoseconds(reading.stamp)
         if name in self._cameras:
-            yield from self._images(name, reading, ns, wanted)
+            yield from self._images(name, reading, ns, subscribed)
             return
         topic = self._topics[name]
-        names = [n for n in self._names[name] if wanted(n)]
+        names = [n for n in self._names[name] if subscribed(n)]
         if names or is_odometry(self._sensors[name]):  # whose covariance grows with each reading
             data = topic.message(ns, reading.values)
             for each in names:
                 yield LiveMessage(each, topic.msgtype, ns, data)
 
     def _images(
-        self, name: str, reading: Reading, ns: int, wanted: Callable[[str], bool]
+        self, name: str, reading: Reading, ns: int, subscribed: Callable[[str], bool]
     ) -> Iterator[LiveMessage]:
         leaves = ("image_raw", "camera_info")
         kinds = ("depth", "color") if reading.colour is not None else ("depth",)
-        if not any(wanted(f"/{name}/{kind}/{leaf}") for kind in kinds for leaf in leaves):
+        if not any(subscribed(f"/{name}/{kind}/{leaf}") for kind in kinds for leaf in leaves):
             return
         frame = CameraFrame(ns / 1e9, depth_mm(reading.values), reading.colour)
         for image in self._cameras[name](frame):
-            if wanted(image.topic):
+            if subscribed(image.topic):
                 yield LiveMessage(image.topic, image.msgtype, ns, b"".join(image.pieces))
 
     def _odometer(self, ns: int, obs: Observation) -> bytes:

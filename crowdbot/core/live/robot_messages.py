@@ -15,7 +15,7 @@ from crowdbot.core.recording.topics import Topic
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.core.types.task import Task
 
-Wanted = Callable[[str], bool]
+TopicFilter = Callable[[str], bool]
 
 
 class RobotMessages:
@@ -43,16 +43,16 @@ class RobotMessages:
         offers = self._observed.offers()
         return [replace(o, topic=robot_topic(o.topic, self._space)) for o in offers]
 
-    def messages(self, obs: Observation, wanted: Wanted) -> Iterator[LiveMessage]:
+    def messages(self, obs: Observation, subscribed: TopicFilter) -> Iterator[LiveMessage]:
         """Yield new messages, as `Observed.messages`."""
-        return self._named(self._observed.messages(obs, self._plain(wanted)))
+        return self._named(self._observed.messages(obs, self._plain(subscribed)))
 
-    def again(self, obs: Observation, wanted: Wanted) -> Iterator[LiveMessage]:
+    def again(self, obs: Observation, subscribed: TopicFilter) -> Iterator[LiveMessage]:
         """Yield the latest messages, as `Observed.again`."""
-        return self._named(self._observed.again(obs, self._plain(wanted)))
+        return self._named(self._observed.again(obs, self._plain(subscribed)))
 
-    def _plain(self, wanted: Wanted) -> Wanted:
-        return lambda topic: wanted(robot_topic(topic, self._space))
+    def _plain(self, subscribed: TopicFilter) -> TopicFilter:
+        return lambda topic: subscribed(robot_topic(topic, self._space))
 
     def _named(self, messages: Iterable[LiveMessage]) -> Iterator[LiveMessage]:
         for message in messages:

@@ -75,15 +75,15 @@ def serve_runs(service: LiveServe) -> Run:
             scenario = service.scenarios[index]
             run = _serve_one(service, scenario)
             last = run or last
-            wanted = session.take_request()
-            if run is not None and not wanted and service.stay:
-                wanted = session.wait_for_request()
-            if not wanted:
+            request = session.take_request()
+            if run is not None and not request and service.stay:
+                request = session.wait_for_request()
+            if not request:
                 return _ended(last)
-            if wanted == "next":
+            if request == "next":
                 index = (index + 1) % len(service.scenarios)
-            elif wanted == "load":
-                index = session.scenarios.index(session.wanted)
+            elif request == "load":
+                index = session.scenarios.index(session.requested)
 
 
 def _ended(last: Run | None) -> Run:

@@ -88,10 +88,10 @@ def _parts(kind: str, which: str) -> Any:
     if which == kind:
         fields = ("request_message", "response_message", "event_message")
         return [(f, (Nodetype.NAME, n)) for f, n in zip(fields, names, strict=True)]
-    found: list[Any] = [("info", (Nodetype.NAME, _EVENT))]
+    parts: list[Any] = [("info", (Nodetype.NAME, _EVENT))]
     for field, name in zip(("request", "response"), names, strict=False):
-        found.append((field, (Nodetype.SEQUENCE, ((Nodetype.NAME, name), 1))))
-    return found
+        parts.append((field, (Nodetype.SEQUENCE, ((Nodetype.NAME, name), 1))))
+    return parts
 
 
 def _made(msgtype: str, values: object) -> Any:

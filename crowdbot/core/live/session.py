@@ -37,7 +37,7 @@ class LiveSession:
         state, scenario, run, seed, t: facts about it.
         robots: the robots of all scenarios, by the namespace of their topics, which is empty for
             the only robot of a scenario.
-        scenarios: ids of the available scenarios; ``wanted`` is the requested one.
+        scenarios: ids of the available scenarios; ``requested`` is the one to load.
     """
 
     interrupted: Callable[[], bool] = lambda: False
@@ -49,7 +49,7 @@ class LiveSession:
     t: float = 0.0
     robots: Mapping[str, LiveRobot] = field(default_factory=lambda: {"": LiveRobot()})
     scenarios: Sequence[str] = ()
-    wanted: str = ""
+    requested: str = ""
     _changed: threading.Condition = field(default_factory=threading.Condition)
     _paused: bool = False
     _steps: int = 0
@@ -155,8 +155,8 @@ class LiveSession:
     def take_request(self) -> Request:
         """Return the pending request and forget it; empty if there is none."""
         with self._changed:
-            wanted, self._request = self._request, ""
-            return wanted
+            request, self._request = self._request, ""
+            return request
 
     def _wait(self, done: Callable[[], bool], until: float) -> None:
         """Wait for a condition, a time, or the end of the run; requires the lock."""
@@ -296,10 +296,10 @@ class LiveSession:
                 self._changed.notify_all()
         return True
 
-    def pause(self, wanted: bool) -> None:
+    def pause(self, paused: bool) -> None:
         """Pause the run before its next step, or resume it."""
         with self._changed:
-            self._paused, self._steps = wanted, 0
+            self._paused, self._steps = paused, 0
             self._changed.notify_all()
 
     def step(self, count: int) -> int:
@@ -320,7 +320,7 @@ class LiveSession:
     def load(self, scenario: str) -> None:
         """Stop the run and start another scenario."""
         with self._changed:
-            self.wanted = scenario
+            self.requested = scenario
         self.ask_for("load")
 
     @property

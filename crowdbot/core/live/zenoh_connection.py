@@ -63,7 +63,7 @@ class _Publisher:
     def __init__(self, topic: Ros2Topic, publisher: Any, token: Any, gid: bytes) -> None:
         self.topic, self.publisher, self.token = topic, publisher, token
         self._gid, self._sequence = gid, itertools.count(1)
-        self.wanted = topic.latched
+        self.has_readers = topic.latched
         self.latest: LiveMessage | None = None
 
     def put(self, message: LiveMessage, distro: Distro) -> None:
@@ -136,7 +136,7 @@ class ZenohConnection:
     def wants(self, topic: str) -> bool:
         """Return True if a client listens to a topic."""
         found = self._publishers.get(topic)
-        return found is not None and found.wanted
+        return found is not None and found.has_readers
 
     def publish(self, messages: Sequence[LiveMessage]) -> None:
         """Send messages to the listeners."""
@@ -168,10 +168,10 @@ class ZenohConnection:
             made: Any = ext.declare_advanced_publisher(self._zenoh, key, cache=cache)
             return _Publisher(topic, made, token, gid_of(text))
         made = self._zenoh.declare_publisher(key)
-        found = _Publisher(topic, made, token, gid_of(text))
-        made.declare_matching_listener(lambda status: self._on_listener(found, status))
-        found.wanted = bool(made.matching_status.matching)
-        return found
+        publisher = _Publisher(topic, made, token, gid_of(text))
+        made.declare_matching_listener(lambda status: self._on_listener(publisher, status))
+        publisher.has_readers = bool(made.matching_status.matching)
+        return publisher
 
     # ----------------------------------------------------------------------- zenoh's threads
     def _hear(self, name: str, msgtype: str, heard: Any) -> None:
@@ -184,13 +184,13 @@ class ZenohConnection:
         text = topic.token(domain, self._name, number, kind, _NODE)
         self._kept.append(self._zenoh.liveliness().declare_token(text))
 
-    def _on_listener(self, found: _Publisher, status: Any) -> None:
-        found.wanted = bool(status.matching)
-        if not found.wanted:
+    def _on_listener(self, publisher: _Publisher, status: Any) -> None:
+        publisher.has_readers = bool(status.matching)
+        if not publisher.has_readers:
             return
         with self._lock:
-            if self._resend and found.latest is not None:
-                found.put(found.latest, self._network.distro)
+            if self._resend and publisher.latest is not None:
+                publisher.put(publisher.latest, self._network.distro)
         self._session.listened()
 
     def _on_driver(self, robot: str, sample: Any) -> None:

@@ -108,10 +108,10 @@ class PlannerChoice:
     @property
     def all_files(self) -> dict[str, Path]:
         """Return SHA-256 -> file for all files that the planner, or each one of a fleet, reads."""
-        found = dict(self.files)
+        files = dict(self.files)
         for choice in self.fleet.values():
-            found |= choice.files
-        return found
+            files |= choice.files
+        return files
 
     @property
     def died(self) -> str:

@@ -82,8 +82,8 @@ def _process_of_class(
 ) -> ProcessPlan:
     """Return the process in which a class runs."""
     return ProcessPlan(
-        who=planner_title(name, str(path)),
-        what={
+        title=planner_title(name, str(path)),
+        own_side={
             "name": name,
             "origin": str(path),
             "file": str(path),

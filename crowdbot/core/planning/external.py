@@ -132,7 +132,7 @@ class _Program:
     def process(self, parameters: Mapping[str, Any], place: PlannerPlace) -> ProcessPlan:
         """Return the process in which it runs."""
         return ProcessPlan(
-            who=planner_title(self.name, str(self._path)),
+            title=planner_title(self.name, str(self._path)),
             command=self.command,
             folder=str(self._folder),
             parameters=parameters,

@@ -21,15 +21,17 @@ def planners_by_robot(text: str) -> dict[str, str]:
     """
     if not _NAMED.match(text):
         return {}
-    found: dict[str, str] = {}
+    planners: dict[str, str] = {}
     for part in _NEXT.split(text):
         robot, _, planner = part.partition("=")
         if not planner:
             raise InputError(f"'{part}': which planner? Write {robot}=dwa")
-        if robot in found:
-            raise InputError(f"robot '{robot}' is given two planners: {found[robot]} and {planner}")
-        found[robot] = planner
-    return found
+        if robot in planners:
+            raise InputError(
+                f"robot '{robot}' is given two planners: {planners[robot]} and {planner}"
+            )
+        planners[robot] = planner
+    return planners
 
 
 def fleet_choice(

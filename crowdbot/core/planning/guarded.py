@@ -43,16 +43,16 @@ class GuardedPlanner:
     def __init__(
         self,
         planner: Planner,
-        who: str,
+        title: str,
         around: AbstractContextManager[Any] | None = None,
     ) -> None:
         self._planner = planner
         self._around = around or contextlib.nullcontext()
         self._reset_call = PluginCall(
-            who, sources=self._sources, error=PlannerError, passes=PlannerError
+            title, sources=self._sources, error=PlannerError, passes=PlannerError
         )
         self._step_call = PluginCall(
-            who,
+            title,
             sources=self._sources,
             error=PlannerError,
             passes=(PlannerError, NoValidCommand),

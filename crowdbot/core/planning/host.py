@@ -106,9 +106,9 @@ class PlannerHost:
         seen = _protected(obs) if self._copies else obs
         begin = time.perf_counter()
         try:
-            wanted = self._guarded.step(seen)
+            requested = self._guarded.step(seen)
         except NoValidCommand:
-            wanted = STOP
+            requested = STOP
             self.stops += 1
         except PlannerHungError:
             self._hung("step")
@@ -116,7 +116,7 @@ class PlannerHost:
         self.steps += 1
         if self._budget is not None and seconds > self._budget:
             self._guarded.fail(f"step took {seconds:.3g} s; the budget is {self._budget:g} s")
-        command, clamped = self._clamp(wanted)
+        command, clamped = self._clamp(requested)
         self.clamped += clamped
         return HostedCommand(command, clamped, seconds)
 

@@ -158,9 +158,11 @@ def named_signal(name: str, value: float) -> tuple[str, float]:
 class SignalBounds:
     """The number of signals in one run, which recordings and pages have to hold."""
 
-    def __init__(self, what: str = "log", kind: str = "signals", most: int = _MOST_VALUES) -> None:
+    def __init__(
+        self, subject: str = "log", kind: str = "signals", most: int = _MOST_VALUES
+    ) -> None:
         self._names, self._values = set[str](), 0
-        self._what, self._kind, self._most = what, kind, most
+        self._subject, self._kind, self._most = subject, kind, most
 
     def check(self, name: str, values: int = 1) -> None:
         """Count some values of a signal.
@@ -172,10 +174,10 @@ class SignalBounds:
         self._values += values
         if len(self._names) > _MOST_SIGNALS:
             limit = f"{_MOST_SIGNALS} names of {self._kind}"
-            raise PlannerError(f"{self._what}: more than {limit} in a run")
+            raise PlannerError(f"{self._subject}: more than {limit} in a run")
         if self._values > self._most:
             limit = f"{self._most} values of {self._kind}"
-            raise PlannerError(f"{self._what}: more than {limit} in a run")
+            raise PlannerError(f"{self._subject}: more than {limit} in a run")
 
 
 def drawing_bounds() -> SignalBounds:

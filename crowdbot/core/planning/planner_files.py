@@ -31,9 +31,9 @@ def planner_files(text: str, include: Iterable[str] = ()) -> dict[str, Path]:
         raise InputError(f"{text}: a planner is handed in as FILE.py:CLASS or as a document")
     if not path.is_file():
         raise InputError(f"{path}: no such file")
-    found = {path, *(source_files(path) if path.suffix == ".py" else _of_document(path))}
+    files = {path, *(source_files(path) if path.suffix == ".py" else _of_document(path))}
     folder = path.resolve().parent
-    named = {_name(file, folder): file for file in found}
+    named = {_name(file, folder): file for file in files}
     for name, file in data_files(folder, include).items():
         if name.startswith("../"):
             raise InputError(f"{file} does not lie in {folder}, from which the planner is sealed")

@@ -215,8 +215,8 @@ def _process_of_kind(
     """Return the process in which a planner of a plugin runs."""
     owner = registry.owner(registry.find("planner", spec.kind))
     return ProcessPlan(
-        who=planner_title(spec.kind, owner.distribution),
-        what={
+        title=planner_title(spec.kind, owner.distribution),
+        own_side={
             "name": spec.kind,
             "origin": owner.distribution,
             "kind": spec.kind,

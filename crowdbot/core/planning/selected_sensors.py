@@ -30,12 +30,12 @@ def select_sensors(
     if needs is None:
         return tuple(n for n, s in sensors.items() if privileged or not s.privileged)
     offered = {*sensors, *(s.category for s in sensors.values())}
-    wanted = {need.removesuffix("?") for need in needs}
+    required = {need.removesuffix("?") for need in needs}
     for need in needs:
         if need not in offered and not need.endswith("?"):
             has = ", ".join(sorted(offered)) or "none"
             raise InputError(f"planner '{planner}' needs '{need}'; the robot's sensors: {has}")
-    found = tuple(n for n, s in sensors.items() if n in wanted or s.category in wanted)
+    found = tuple(n for n, s in sensors.items() if n in required or s.category in required)
     for name in found:
         if sensors[name].privileged and not privileged:
             raise InputError(

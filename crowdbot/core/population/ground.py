@@ -67,7 +67,7 @@ class Ground:
             begin = space.nearest_part(start, _CORNER * radius)
         return bool(begin == end >= 0)
 
-    def check_route(self, who: str, start: Point, route: Sequence[Point], radius: float) -> None:
+    def check_route(self, name: str, start: Point, route: Sequence[Point], radius: float) -> None:
         """Refuse a route without a path from one point to the next.
 
         Raises:
@@ -76,7 +76,7 @@ class Ground:
         for goal in route:
             if goal != start and not self.reaches(start, goal, radius):
                 raise InputError(
-                    f"{who}: no way leads from ({start[0]:g}, {start[1]:g}) to the goal "
+                    f"{name}: no way leads from ({start[0]:g}, {start[1]:g}) to the goal "
                     f"({goal[0]:g}, {goal[1]:g}) for a body of radius {radius:g} m"
                 )
             start = goal

@@ -76,7 +76,7 @@ class FitTask:
         return self.reference.ceiling.score
 
     @property
-    def what(self) -> list[Any]:
+    def inputs(self) -> list[Any]:
         """Return the values that identify this fit in its log."""
         return [self.crowd, self.overrides, [digest(Path(f)) for f in self.files]]
 
@@ -99,7 +99,7 @@ class Fitted(Protocol):
         """Return the score of one half of the recordings against the other."""
 
     @property
-    def what(self) -> list[Any]:
+    def inputs(self) -> list[Any]:
         """Return the values that identify this fit in its log."""
 
     def loss(self, overrides: Sequence[str], seed: int) -> float:
@@ -234,7 +234,7 @@ def _result(task: Fitted, parameters: Sequence[Parameter], strategy: CMA, genera
 def _head(task: Fitted, parameters: Sequence[Parameter], seed: int, size: int) -> str:
     """Return the first line that a log of this fit must have."""
     inputs = [
-        *task.what, seed, size,
+        *task.inputs, seed, size,
         [(p.key, p.start, p.low, p.high) for p in parameters],
     ]  # fmt: skip
     return hashlib.sha256(json.dumps(inputs).encode()).hexdigest()

@@ -53,14 +53,14 @@ def lines_of(crowds: Iterable[tuple[str, str]]) -> list[str]:
     for name, like in crowds:
         row = by_name(name) if name else known().get(like)
         rows.setdefault(name or (row["name"] if row else like), row)
-    found = [_line(name, row) for name, row in rows.items() if row is not None]
+    lines = [_line(name, row) for name, row in rows.items() if row is not None]
     missing = [name for name, row in rows.items() if row is None]
     if missing:
-        found.append(
+        lines.append(
             f"{plural(len(missing), 'crowd')}; how real these people are was not measured "
             "(crowdbot realism SUITE)"
         )
-    return found
+    return lines
 
 
 def _line(name: str, row: Mapping[str, Any]) -> str:

@@ -87,8 +87,8 @@ class AvoidNobody:
         """Return accelerations towards the preferred velocity, m/s^2."""
         way = view.goal - view.position
         away = np.hypot(way[:, :1], way[:, 1:])
-        wanted = view.agents.preferred_speed[:, np.newaxis] * way / (away + 1e-9)
-        return np.asarray((wanted - view.velocity) / self.relaxation_time)
+        desired = view.agents.preferred_speed[:, np.newaxis] * way / (away + 1e-9)
+        return np.asarray((desired - view.velocity) / self.relaxation_time)
 
 
 class Ghosts(AvoidNobody):

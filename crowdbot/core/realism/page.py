@@ -36,33 +36,34 @@ def render(title: str, crowds: Sequence[Realism]) -> str:
     )
 
 
-def _section(found: Realism) -> dict[str, Any]:
+def _section(realism: Realism) -> dict[str, Any]:
+    low, high = realism.low, realism.high
     return {
-        "name": found.name,
-        "index": f"{found.index:.2f}",
-        "score": f"{found.score:.3f}",
-        "range": f" ({found.low:.3f} to {found.high:.3f} over draws)" * (found.low < found.high),
-        "floor": f"{found.floor:.3f}",
-        "ceiling": f"{found.ceiling:.3f}",
-        "coverage": found.coverage,
-        "rows": rows(found),
+        "name": realism.name,
+        "index": f"{realism.index:.2f}",
+        "score": f"{realism.score:.3f}",
+        "range": f" ({low:.3f} to {high:.3f} over draws)" * (low < high),
+        "floor": f"{realism.floor:.3f}",
+        "ceiling": f"{realism.ceiling:.3f}",
+        "coverage": realism.coverage,
+        "rows": rows(realism),
         "figures": [
-            ("Fundamental diagram", [_diagram(found, flow) for flow in FLOWS]),
-            *((_TITLES[f], [_histogram(found, f, cell) for cell in _cells(found)])
+            ("Fundamental diagram", [_diagram(realism, flow) for flow in FLOWS]),
+            *((_TITLES[f], [_histogram(realism, f, cell) for cell in _cells(realism)])
               for f in FEATURES),
-            ("Pair correlation", [_pairs(found, cell) for cell in _cells(found)]),
+            ("Pair correlation", [_pairs(realism, cell) for cell in _cells(realism)]),
         ],
     }  # fmt: skip
 
 
-def _cells(found: Realism) -> list[tuple[str, str]]:
-    return found.reference.cells
+def _cells(realism: Realism) -> list[tuple[str, str]]:
+    return realism.reference.cells
 
 
-def _histogram(found: Realism, feature: str, cell: tuple[str, str]) -> dict[str, str]:
+def _histogram(realism: Realism, feature: str, cell: tuple[str, str]) -> dict[str, str]:
     edges = EDGES[feature]
-    own = found.statistics.histograms.get(cell, {}).get(feature, np.zeros(len(edges) - 1))
-    recorded = found.reference.whole.histograms[cell][feature]
+    own = realism.statistics.histograms.get(cell, {}).get(feature, np.zeros(len(edges) - 1))
+    recorded = realism.reference.whole.histograms[cell][feature]
     shares = [h / max(1e-12, float(np.sum(h))) for h in (own, recorded)]
     top = max(1e-9, *(float(s.max()) for s in shares))
     ends = edges[0], edges[-2] if edges[-1] > 100.0 else edges[-1]
@@ -76,9 +77,9 @@ def _histogram(found: Realism, feature: str, cell: tuple[str, str]) -> dict[str,
     }
 
 
-def _pairs(found: Realism, cell: tuple[str, str]) -> dict[str, str]:
-    own = found.statistics.pairs.get(cell, np.full(len(PAIR_EDGES) - 1, np.nan))
-    recorded = found.reference.whole.pairs[cell]
+def _pairs(realism: Realism, cell: tuple[str, str]) -> dict[str, str]:
+    own = realism.statistics.pairs.get(cell, np.full(len(PAIR_EDGES) - 1, np.nan))
+    recorded = realism.reference.whole.pairs[cell]
     top = max(1.0, float(np.nanmax(np.concatenate([own, recorded, [1.0]]))))
     return {
         "own": _steps(np.nan_to_num(own), top),
@@ -90,9 +91,9 @@ def _pairs(found: Realism, cell: tuple[str, str]) -> dict[str, str]:
     }
 
 
-def _diagram(found: Realism, flow: str) -> dict[str, str]:
-    own = found.statistics.diagram.get(flow, np.zeros((0, 2)))
-    recorded = found.reference.whole.diagram.get(flow, np.zeros((0, 2)))
+def _diagram(realism: Realism, flow: str) -> dict[str, str]:
+    own = realism.statistics.diagram.get(flow, np.zeros((0, 2)))
+    recorded = realism.reference.whole.diagram.get(flow, np.zeros((0, 2)))
     return {
         "own": _line(own, 2.5, 2.0),
         "real": _line(recorded, 2.5, 2.0),

@@ -55,16 +55,16 @@ def read_runs(files: Sequence[Path]) -> tuple[list[CorridorTracks], list[str]]:
     Raises:
         InputError: a recording cannot be read, or all are left out.
     """
-    found: list[CorridorTracks] = []
+    tracks: list[CorridorTracks] = []
     without: list[str] = []
     for file in files:
         try:
-            found.append(tracks_of(_run(file), str(file)))
+            tracks.append(tracks_of(_run(file), str(file)))
         except NothingToCompareError as error:
             without.append(str(error))
-    if not found:
+    if not tracks:
         raise InputError(without[0])
-    return found, without
+    return tracks, without
 
 
 def _bag(path: Path, topic: str | None = None) -> Trajectories:

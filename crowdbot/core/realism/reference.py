@@ -128,23 +128,23 @@ def reference_of(
         raise InputError("a reference needs at least one recording")
     halves = _halved(tracks[0]) if len(tracks) == 1 else _alternate(tracks)
     first, second = (statistics_of(half) for half in halves)
-    found = RealismReference(
+    reference = RealismReference(
         halves=(first, second),
         whole=statistics_of(tracks),
         floors=shipped().floors if floors is None else floors,
         sources=tuple(sources),
         folds=_folds(tracks) or _shared([(first, second), (second, first)]),
     )
-    if not any(compared_cells(half) for half in found.halves):
+    if not any(compared_cells(half) for half in reference.halves):
         raise InputError(
             f"{', '.join(sources)}: no one walks among 0.3 to 2.4 people per m² in windows of 4 m"
         )
-    if not found.folds:
+    if not reference.folds:
         raise InputError(
             f"{', '.join(sources)}: no two parts have people at the same density, so that nothing "
             "says how alike recorded people are; give more or longer recordings"
         )
-    return found
+    return reference
 
 
 def read_reference(files: Sequence[Path]) -> RealismReference:

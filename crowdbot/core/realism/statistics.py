@@ -158,12 +158,12 @@ def statistics_of(tracks: Sequence[CorridorTracks]) -> Statistics:
 
 def histograms_of(rows: Array) -> dict[str, Array]:
     """Return feature -> (B,) numbers of finite samples in people's rows."""
-    found = {}
+    histograms = {}
     for column, name in enumerate(FEATURES, SPEED):
         values = rows[:, column]
         values = np.minimum(values[~np.isnan(values)], _LARGEST)
-        found[name] = np.histogram(values, EDGES[name])[0].astype(np.float64)
-    return found
+        histograms[name] = np.histogram(values, EDGES[name])[0].astype(np.float64)
+    return histograms
 
 
 def _diagram(windows: Array) -> Array:

@@ -17,26 +17,26 @@ _NAMES = {
 }
 
 
-def rows(found: Realism) -> list[list[str]]:
+def rows(realism: Realism) -> list[list[str]]:
     """Return rows: part, this crowd, recorded people, people without avoidance."""
-    reference = found.reference
+    reference = realism.reference
     real, none = reference.ceiling, reference.floor
-    out = [["score", _two(found.score), _two(found.ceiling), _two(found.floor)]]
+    out = [["score", _two(realism.score), _two(realism.ceiling), _two(realism.floor)]]
     for name in FEATURES:
         parts = [s.parts.get(name, np.nan) for s in (real, none)]
-        out.append([_NAMES.get(name, name), _two(found.parts[name]), *map(_two, parts)])
+        out.append([_NAMES.get(name, name), _two(realism.parts[name]), *map(_two, parts)])
     between, ghosts = real_beside(reference), ghosts_beside(reference)
     for label, name in (
         ("error of the fundamental diagram", "diagram_error"),
         ("error of the lane order", "lane_error"),
         ("error of the pair correlation", "pair_error"),
     ):
-        errors = [getattr(b, name) for b in (found.beside, between, ghosts)]
+        errors = [getattr(b, name) for b in (realism.beside, between, ghosts)]
         out.append([label, *map(_two, errors)])
     for k, percent in enumerate(("1 %", "5 %", "50 %")):
-        distances = [float(b.nearest_error[k]) for b in (found.beside, between, ghosts)]
+        distances = [float(b.nearest_error[k]) for b in (realism.beside, between, ghosts)]
         out.append([f"error of the {percent} nearest distance, m", *map(_two, distances)])
-    out.append(["person-time overlapping", _percent(found.beside.overlap), "–", "–"])
+    out.append(["person-time overlapping", _percent(realism.beside.overlap), "–", "–"])
     return out
 
 

@@ -16,14 +16,14 @@ from crowdbot.errors import InputError
 _TEXTS, _NUMBERS = ("knows", "side"), ("distance", "tolerance", "angle", "hold", "radius")
 
 
-def person_task_message(found: TaskPerson) -> Any:
+def person_task_message(person: TaskPerson) -> Any:
     """Return a task and its people as ``crowdbot_msgs/PersonTask``."""
-    task = found.task
+    task = person.task
     return ros.new(
         "crowdbot_msgs/PersonTask",
         task=task.kind,
-        person=np.ascontiguousarray(found.id, np.int64),
-        facing=np.ascontiguousarray(found.facing, np.float64),
+        person=np.ascontiguousarray(person.id, np.int64),
+        facing=np.ascontiguousarray(person.facing, np.float64),
         in_a_row=task.in_a_row,
         **{name: getattr(task, name) for name in (*_TEXTS, *_NUMBERS)},
     )

@@ -60,16 +60,16 @@ def find_plugins(
     names = None if allow is None else tuple(n for n in (a.strip() for a in allow) if n)
     given = [entry for path in extra for entry in entries_at(path)]
     own = {(e.plugin.name, e.plugin.file) for e in given if e.plugin.file}
-    wanted: list[PluginEntry] = []
+    chosen: list[PluginEntry] = []
     excluded: list[PluginEntry] = []
     for entry in _installed():
         ours = entry.plugin.name == BUILTIN
         if (entry.plugin.name, entry.plugin.file) in own or not (entry_points or ours):
             continue  # the given path is this plugin
         allowed = ours or names is None or entry.plugin.name in names
-        (wanted if allowed else excluded).append(entry)
+        (chosen if allowed else excluded).append(entry)
     with telling_interrupts():
-        loaded = tuple(_load([*wanted, *given]))
+        loaded = tuple(_load([*chosen, *given]))
     return Discovery(
         plugins=loaded,
         excluded=tuple(e.plugin for e in excluded),
@@ -81,8 +81,8 @@ def _load(entries: Sequence[PluginEntry]) -> Iterator[Plugin]:
     """Load plugins; those that share a name are not imported, since all will be disabled."""
     names = Counter(e.plugin.name for e in entries if not e.plugin.error)
     for entry in entries:
-        wanted = names[entry.plugin.name] == 1 and not entry.plugin.error
-        yield load_plugin(entry.plugin, entry.load) if wanted else entry.plugin
+        unique = names[entry.plugin.name] == 1 and not entry.plugin.error
+        yield load_plugin(entry.plugin, entry.load) if unique else entry.plugin
 
 
 def _installed() -> list[PluginEntry]:
@@ -91,7 +91,7 @@ def _installed() -> list[PluginEntry]:
     The first on ``sys.path`` is the one that Python would import.
     """
     seen: set[str] = set()
-    found: list[PluginEntry] = []
+    entries: list[PluginEntry] = []
     for distribution in metadata.distributions():
         text = _entry_points(distribution)
         if text is None or _SECTION.search(text) is None:
@@ -100,8 +100,8 @@ def _installed() -> list[PluginEntry]:
         key = re.sub(r"[-_.]+", "-", title).lower()
         if key not in seen:
             seen.add(key)
-            found += _entries(distribution, f"{title} {version}", ours=key == _OURS)
-    return sorted(found, key=lambda e: (e.plugin.name, e.plugin.distribution, e.plugin.file))
+            entries += _entries(distribution, f"{title} {version}", ours=key == _OURS)
+    return sorted(entries, key=lambda e: (e.plugin.name, e.plugin.distribution, e.plugin.file))
 
 
 def _entry_points(distribution: metadata.Distribution) -> str | None:

@@ -23,12 +23,12 @@ class PluginCall:
             values = sensor.read(...)
 
     Python output goes to stderr, so that stdout holds only the command's result. The user's
-    interrupt passes, and so do crowdbot's own errors, prefixed with ``who`` if missing. All other
+    interrupt passes, and so do crowdbot's own errors, prefixed with ``title`` if missing. All other
     exceptions, including ``SystemExit`` and ``KeyboardInterrupt``, become an ``error`` that names
     the plugin, the call, the file and the line.
 
     Args:
-        who: the plugin and its distribution; start of every message.
+        title: the plugin and its distribution; start of every message.
         sources: function that finds the plugin's files, whose lines are preferred to those of
             libraries.
         error: class of the resulting error.
@@ -37,17 +37,17 @@ class PluginCall:
     Entering it costs 0.4 microseconds; it is reentrant.
     """
 
-    __slots__ = ("_doing", "_error", "_passes", "_sources", "_stdouts", "_t", "who")
+    __slots__ = ("_doing", "_error", "_passes", "_sources", "_stdouts", "_t", "title")
 
     def __init__(
         self,
-        who: str,
+        title: str,
         *,
         sources: Callable[[], Collection[str]] = frozenset,
         error: type[PluginError] = PluginError,
         passes: Exceptions = CrowdbotError,
     ) -> None:
-        self.who = who
+        self.title = title
         self._sources, self._error, self._passes = sources, error, passes
         self._doing = ""
         self._t: float | None = None
@@ -81,17 +81,17 @@ class PluginCall:
         Raises:
             PluginError: always; of the requested class.
         """
-        raise self._error(printable(f"{self.who}: {problem}" if self.who else problem))
+        raise self._error(printable(f"{self.title}: {problem}" if self.title else problem))
 
     def _let_pass_or_raise(self, error: BaseException) -> None:
         if is_user_interrupt(error):
             return
         if not isinstance(error, self._passes):
             raise self._error(self._message(describe_error(error, self._sources()))) from error
-        if isinstance(error, CrowdbotError) and self.who.partition(" (")[0] not in str(error):
-            error.args = (printable(f"{self.who}: {error}"),)
+        if isinstance(error, CrowdbotError) and self.title.partition(" (")[0] not in str(error):
+            error.args = (printable(f"{self.title}: {error}"),)
 
     def _message(self, problem: str) -> str:
         """Return the message: plugin, call, time, and error."""
         doing = self._doing if self._t is None else f"{self._doing} at t = {self._t:g} s"
-        return printable(": ".join(part for part in (self.who, doing, problem) if part))
+        return printable(": ".join(part for part in (self.title, doing, problem) if part))

@@ -67,8 +67,8 @@ def _scenery(shown: ShownRun) -> Scenery:
 
 def scenery_numbers(scene: Scenery) -> dict[str, Any]:
     """Return walls as x0, y0, x1, y1, m, and whom they stop: 3 all, 1 robots, 2 people, 0 none."""
-    whom = scene.stops_robot.astype(int) + 2 * scene.stops_crowd
-    walls = np.column_stack((scene.walls, whom))
+    stops = scene.stops_robot.astype(int) + 2 * scene.stops_crowd
+    walls = np.column_stack((scene.walls, stops))
     return {
         "walls": nested(walls),
         "pillars": nested(scene.pillars),

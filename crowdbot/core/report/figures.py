@@ -109,16 +109,16 @@ def _intervals(
     table: Table, summaries: Sequence[Summary], series: Sequence[Series], selections: Sequence[str]
 ) -> _Numbers:
     place = {s.name: i for i, s in enumerate(series)}
-    found = np.full((len(selections), len(series), len(table.planners), 3), np.nan)
+    intervals = np.full((len(selections), len(series), len(table.planners), 3), np.nan)
     for score in (score for summary in summaries for score in summary.scores):
         row = place[score.metric, score.variant], table.planners.index(score.planner)
-        found[0][row] = _numbers(score.mean)
+        intervals[0][row] = _numbers(score.mean)
     inside = [_inside(table, planner, selections) for planner in table.planners]
     for s, one in enumerate(series):
         for p, planner in enumerate(table.planners):
             for k, numbers in _by_label(table, one, planner, inside[p]):
-                found[k, s, p] = numbers
-    return found
+                intervals[k, s, p] = numbers
+    return intervals
 
 
 def _inside(table: Table, planner: str, selections: Sequence[str]) -> NDArray[np.bool_]:
@@ -163,13 +163,17 @@ def _pairs(
     return found
 
 
-def _fields(found: Comparison, whys: Sequence[str], needed: int | None) -> list[float]:
-    estimates = (found.difference, found.standardised, found.improvement)
+def _fields(comparison: Comparison, whys: Sequence[str], needed: int | None) -> list[float]:
+    estimates = (comparison.difference, comparison.standardised, comparison.improvement)
     numbers = [x for estimate in estimates for x in _numbers(estimate)]
     return [
-        *numbers, _number(found.detectable), _number(found.p_holm), found.pairs, found.draws,
-        found.undecided, VERDICTS.index(found.verdict), whys.index(found.reason), _number(needed),
-    ]  # fmt: skip
+        *numbers,
+        *(_number(x) for x in (comparison.detectable, comparison.p_holm)),
+        *(comparison.pairs, comparison.draws, comparison.undecided),
+        VERDICTS.index(comparison.verdict),
+        whys.index(comparison.reason),
+        _number(needed),
+    ]
 
 
 def _effects(
@@ -180,11 +184,11 @@ def _effects(
 ) -> _Numbers:
     names = [*(axis["name"] for axis in axes), REALISED_DENSITY]
     place = {s.name: i for i, s in enumerate(series)}
-    found = np.full((len(names), len(series), len(planners)), np.nan)
+    effects = np.full((len(names), len(series), len(planners)), np.nan)
     for effect in (e for summary in summaries for e in summary.axes):
         row = place[effect.metric, effect.variant], planners.index(effect.planner)
-        found[names.index(effect.axis)][row] = _number(effect.eta_squared)
-    return found
+        effects[names.index(effect.axis)][row] = _number(effect.eta_squared)
+    return effects
 
 
 def _numbers(estimate: Estimate) -> _Triple:

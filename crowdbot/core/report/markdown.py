@@ -224,12 +224,16 @@ def _shown(summary: Summary) -> list[Comparison]:
     return [c for c in found if is_main(c.metric, c.variant) or c.verdict in differs]
 
 
-def _comparison(found: Comparison) -> Sequence[str]:
-    verdict = f"a is {found.verdict}" if found.verdict in ("better", "worse") else found.verdict
-    score = f"{found.metric} {found.variant}".removesuffix(" corrected")
-    p_holm = "–" if found.p_holm is None else f"{found.p_holm:.3g}"
-    estimates = (joined_text(found.difference), joined_text(found.improvement))
-    return (*map(_plain, (score, found.a, found.b)), *estimates, p_holm, verdict)
+def _comparison(comparison: Comparison) -> Sequence[str]:
+    verdict = (
+        f"a is {comparison.verdict}"
+        if comparison.verdict in ("better", "worse")
+        else comparison.verdict
+    )
+    score = f"{comparison.metric} {comparison.variant}".removesuffix(" corrected")
+    p_holm = "–" if comparison.p_holm is None else f"{comparison.p_holm:.3g}"
+    estimates = (joined_text(comparison.difference), joined_text(comparison.improvement))
+    return (*map(_plain, (score, comparison.a, comparison.b)), *estimates, p_holm, verdict)
 
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:

@@ -164,8 +164,8 @@ def _compared(summary: Summary) -> str:
     )
 
 
-def _p(found: Comparison) -> str:
-    return "–" if found.p_holm is None else f"{found.p_holm:.3g}"
+def _p(comparison: Comparison) -> str:
+    return "–" if comparison.p_holm is None else f"{comparison.p_holm:.3g}"
 
 
 def _table(

@@ -88,12 +88,12 @@ def all_series(table: Table, named: Sequence[str] = ()) -> list[Series]:
     return _named_first(main_first(found, lambda s: s.name), named)
 
 
-def _named_first(found: list[Series], named: Sequence[str]) -> list[Series]:
+def _named_first(series: list[Series], named: Sequence[str]) -> list[Series]:
     places = {metric: i for i, metric in enumerate(named)}
-    first = [s._replace(category=NAMED) for s in found if s.headline and s.metric in places]
+    first = [s._replace(category=NAMED) for s in series if s.headline and s.metric in places]
     first.sort(key=lambda s: places[s.metric])
     taken = {s.name for s in first}
-    return [*first, *(s for s in found if s.name not in taken)]
+    return [*first, *(s for s in series if s.name not in taken)]
 
 
 def _rank(category: str) -> tuple[int, str]:

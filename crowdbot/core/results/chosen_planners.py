@@ -12,34 +12,34 @@ from crowdbot.core.results.with_reference import without_mark
 from crowdbot.errors import UnknownNameError
 
 
-def of_planners(found: Results, patterns: Sequence[str]) -> Results:
+def of_planners(results: Results, patterns: Sequence[str]) -> Results:
     """Return the runs, scores and failures of planners that match patterns.
 
     Patterns apply to reference planners, too; if none matches one of those, all are kept.
 
     Args:
-        found: any results.
+        results: any results.
         patterns: of labels, such as ``dwa*``; none: all planners.
 
     Raises:
         UnknownNameError: a pattern fits no planner.
     """
     if not patterns:
-        return found
-    labels = {r.planner for r in found.runs} | {f.planner for f in found.failures}
+        return results
+    labels = {r.planner for r in results.runs} | {f.planner for f in results.failures}
     fits = {p: {label for label in labels if _fits(label, p)} for p in patterns}
     for pattern, fitting in fits.items():
         if not fitting:
             raise UnknownNameError("planner", pattern, sorted(set(map(without_mark, labels))))
-    wanted = set[str]().union(*fits.values())
+    chosen = set[str]().union(*fits.values())
     references = {label for label in labels if without_mark(label) != label}
-    wanted |= set() if wanted & references else references
-    runs = tuple(r for r in found.runs if r.planner in wanted)
+    chosen |= set() if chosen & references else references
+    runs = tuple(r for r in results.runs if r.planner in chosen)
     return replace(
-        found,
+        results,
         runs=runs,
-        scores=of_runs(found.scores, {r.run_id for r in runs}),
-        failures=tuple(f for f in found.failures if f.planner in wanted),
+        scores=of_runs(results.scores, {r.run_id for r in runs}),
+        failures=tuple(f for f in results.failures if f.planner in chosen),
     )
 
 

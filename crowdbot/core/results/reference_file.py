@@ -161,17 +161,17 @@ class _Table:
 
 def _metrics(results: Results) -> dict[str, Any]:
     """Return version and parameters of each metric in the file, from the records of runs."""
-    found: dict[str, Any] = {}
+    metrics: dict[str, Any] = {}
     for run in results.runs:
         document = run.record.document()
         own = {n: m for n, m in document["metrics"].items() if n in METRICS}
-        changed = [n for n, m in own.items() if found.setdefault(n, m) != m]
+        changed = [n for n, m in own.items() if metrics.setdefault(n, m) != m]
         if changed:
             raise InputError(
                 f"{run.directory}: other runs have another version of {', '.join(changed)}; "
                 "make all references again"
             )
-    return found
+    return metrics
 
 
 def _row(
@@ -258,12 +258,12 @@ def read_references(file: Traversable) -> ReferenceScores:
     return ReferenceScores(tuple(found.commands), Results(runs=runs, scores=scores))
 
 
-def _runs(found: _File) -> Iterator[RunRow]:
-    for maker, scenario, planner, *own, trajectory, _ in found.runs:
-        about = dict(found.scenarios[scenario])
+def _runs(file: _File) -> Iterator[RunRow]:
+    for maker, scenario, planner, *own, trajectory, _ in file.runs:
+        about = dict(file.scenarios[scenario])
         known = {"spec": about.pop("spec"), "realisation": about.pop("realisation")}
         document = {
-            **found.makers[maker], **about, **found.planners[planner], "metrics": found.metrics,
+            **file.makers[maker], **about, **file.planners[planner], "metrics": file.metrics,
             **dict(zip(_OWN, own, strict=True)), "wall_time": 0.0, "references": {},
             "hashes": {**known, "trajectory": f"{_HASH}{trajectory}"},
         }  # fmt: skip
@@ -275,9 +275,9 @@ def _runs(found: _File) -> Iterator[RunRow]:
         yield RunRow(record=record, directory=place)
 
 
-def _scores(found: _File, runs: Sequence[RunRow]) -> Iterator[ScoreRow]:
-    for run, row in zip(runs, found.runs, strict=True):
-        for column, value in zip(found.columns, row[-1], strict=True):
+def _scores(file: _File, runs: Sequence[RunRow]) -> Iterator[ScoreRow]:
+    for run, row in zip(runs, file.runs, strict=True):
+        for column, value in zip(file.columns, row[-1], strict=True):
             yield ScoreRow(
                 run_id=run.run_id, **dict(zip(_COLUMNS, column, strict=True)), value=value,
                 status="ok" if value is not None else "undefined",

@@ -247,13 +247,13 @@ def flat_texts(value: Any) -> dict[str, str]:
     """Return the values of nested mappings as texts, under names joined by dots."""
     if not isinstance(value, Mapping):
         return {}
-    found: dict[str, str] = {}
+    texts: dict[str, str] = {}
     for name, inner in value.items():
         if isinstance(inner, Mapping):
-            found |= {f"{name}.{k}": text for k, text in flat_texts(inner).items()}
+            texts |= {f"{name}.{k}": text for k, text in flat_texts(inner).items()}
         else:
-            found[str(name)] = str(inner)
-    return found
+            texts[str(name)] = str(inner)
+    return texts
 
 
 def place_of(record: RunRecord) -> str:

@@ -54,10 +54,10 @@ def read_rows(root: Path) -> StoredRows:
     if not root.is_dir():
         raise InputError(f"{root}: no folder of results; 'crowdbot campaign' makes one")
     scan = Scan.of(root)
-    found = _as_it_is(root, scan) or _renewed(root, scan) or _in_memory(root, scan)
-    for run in found.damaged:
+    rows = _as_it_is(root, scan) or _renewed(root, scan) or _in_memory(root, scan)
+    for run in rows.damaged:
         _LOG.warning("warning: %s is left out: %s", root / run.directory, run.reason)
-    return found
+    return rows
 
 
 def _as_it_is(root: Path, scan: Scan) -> StoredRows | None:

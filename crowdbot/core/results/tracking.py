@@ -14,18 +14,20 @@ from crowdbot.core.runs.run_directory import RECORDING
 from crowdbot.core.trajectories.tracking_quality import tracking_quality
 
 
-def tracking_lines(found: Results, root: Path, within: Sequence[float]) -> Iterator[dict[str, Any]]:
+def tracking_lines(
+    results: Results, root: Path, within: Sequence[float]
+) -> Iterator[dict[str, Any]]:
     """Yield a line for each run whose planner drew its tracks, and each distance.
 
     Args:
-        found: the runs.
+        results: the runs.
         root: of the run directories.
         within: distances from the robot, m.
 
     Raises:
         InputError: a recording is damaged.
     """
-    for run in found.runs:
+    for run in results.runs:
         with Recording(root / run.directory / RECORDING) as recording:
             if recording.robots:
                 continue  # people near a fleet are recorded apart from each robot

@@ -73,9 +73,9 @@ def with_reference(results: Results, given: Results | None) -> tuple[Results, tu
     return both, tuple(sorted({r.planner for r in runs}))
 
 
-def _in_scenarios(results: Results, wanted: set[tuple[str, str]]) -> Results:
+def _in_scenarios(results: Results, scenarios: set[tuple[str, str]]) -> Results:
     """Return results in some scenarios; a warning says how many others there are."""
-    others = sorted({r.scenario for r in results.runs if (r.suite, r.scenario) not in wanted})
+    others = sorted({r.scenario for r in results.runs if (r.suite, r.scenario) not in scenarios})
     if not others:
         return results
     some = ", ".join(others[:_SHOWN]) + ", …" * (len(others) > _SHOWN)
@@ -83,8 +83,8 @@ def _in_scenarios(results: Results, wanted: set[tuple[str, str]]) -> Results:
         "warning: %s without a reference run left out: %s; without --reference all are shown",
         plural(len(others), "scenario"), some,
     )  # fmt: skip
-    runs = tuple(r for r in results.runs if (r.suite, r.scenario) in wanted)
-    failures = tuple(f for f in results.failures if (f.suite, f.scenario) in wanted)
+    runs = tuple(r for r in results.runs if (r.suite, r.scenario) in scenarios)
+    failures = tuple(f for f in results.failures if (f.suite, f.scenario) in scenarios)
     scores = of_runs(results.scores, {r.run_id for r in runs})
     return replace(results, runs=runs, scores=scores, failures=failures)
 

@@ -57,14 +57,14 @@ def check_masses(described: Description) -> None:
 def _parts(described: Description) -> dict[str, list[str]]:
     """Return the links that move as one, by the link from which they hang."""
     above = {joint.child: joint for joint in described.joints.values()}
-    found = dict[str, list[str]]()
+    parts = dict[str, list[str]]()
     for name in described.links:
         top, seen = name, {name}
         while (joint := above.get(top)) is not None and not joint.free and joint.parent not in seen:
             top = joint.parent
             seen.add(top)
-        found.setdefault(top, []).append(name)
-    return found
+        parts.setdefault(top, []).append(name)
+    return parts
 
 
 def _resists(described: Description, link: str) -> bool:

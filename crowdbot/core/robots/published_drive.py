@@ -137,7 +137,7 @@ def other_in_plugins(model: Xml.Element, track: float, radius: float) -> list[st
     notes = []
     for plugin in model.iter("plugin"):
         for element in plugin.iter():
-            scale, used, what = _DRIVES.get(element.tag.lower().replace("_", ""), (0.0, "", ""))
+            scale, used, label = _DRIVES.get(element.tag.lower().replace("_", ""), (0.0, "", ""))
             try:
                 length = scale * float(element.text or "0")
             except ValueError:
@@ -145,7 +145,7 @@ def other_in_plugins(model: Xml.Element, track: float, radius: float) -> list[st
             own = track if used == "track" else radius
             if length > 0.0 and abs(length - own) > _ROUNDED * own:
                 notes.append(
-                    f"{what} {length:g} m in Gazebo's plugin is not used: the description has "
+                    f"{label} {length:g} m in Gazebo's plugin is not used: the description has "
                     f"{own:.4g} m"
                 )
     return list(dict.fromkeys(notes))

@@ -59,8 +59,8 @@ def read_diff_side(text: str, registry: Registry, overrides: Sequence[str] = ())
     folder = Path(text)
     if folder.is_dir():
         return _run(folder, registry, overrides)
-    spec, wanted = _split(text, registry)
-    return _scenario(text, spec, wanted, registry, overrides)
+    spec, scenario_id = _split(text, registry)
+    return _scenario(text, spec, scenario_id, registry, overrides)
 
 
 def _split(text: str, registry: Registry) -> tuple[str, str | None]:
@@ -68,18 +68,18 @@ def _split(text: str, registry: Registry) -> tuple[str, str | None]:
     if Path(text).is_file():
         return text, None
     if "#" in text:
-        spec, _, wanted = text.rpartition("#")
-        return spec, wanted
-    spec, slash, wanted = text.partition("/")
+        spec, _, scenario_id = text.rpartition("#")
+        return spec, scenario_id
+    spec, slash, scenario_id = text.partition("/")
     if slash and spec in suite_names(registry) and not text.endswith((".yaml", ".yml")):
-        return spec, wanted
+        return spec, scenario_id
     return text, None
 
 
 def _scenario(
-    name: str, spec: str, wanted: str | None, registry: Registry, overrides: Sequence[str]
+    name: str, spec: str, scenario_id: str | None, registry: Registry, overrides: Sequence[str]
 ) -> DiffSide:
-    scenario = pick(open_spec(spec, registry, overrides), wanted)
+    scenario = pick(open_spec(spec, registry, overrides), scenario_id)
     kinds = registry.spec_versions(scenario)
     content = json.loads(canonical_bytes(scenario, kinds))
     return DiffSide(name=name, scenario=content, hash=content_hash(scenario, kinds))

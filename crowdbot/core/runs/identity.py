@@ -279,10 +279,10 @@ def recorded_otherwise(request: Request, identity: RunIdentity) -> tuple[str, ..
     before = RunRecord.find(request.directory)
     if before is None:
         return ()
-    there, wanted = before.identity(), identity.identity()
+    there, expected = before.identity(), identity.identity()
     found = []
-    for key in dict.fromkeys([*wanted, *there]):
-        a, b = _flat(key, there.get(key)), _flat(key, wanted.get(key))
+    for key in dict.fromkeys([*expected, *there]):
+        a, b = _flat(key, there.get(key)), _flat(key, expected.get(key))
         found += sorted(name for name in a.keys() | b.keys() if a.get(name) != b.get(name))
     return (*found, *["recorded"] * (before.recorded != request.options.record))
 

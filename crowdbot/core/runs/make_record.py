@@ -138,16 +138,16 @@ def write_scenario(folder: Path, scenario: Scenario, registry: Registry) -> None
 
 def _conditions(scenario: Scenario, runs: Mapping[str, Trajectories]) -> dict[str, str]:
     """Return conditions that must be equal in compared runs, regardless of their axes."""
-    found = {f"rates.{name}": f"{rate:g} Hz" for name, rate in scenario.rates}
+    conditions = {f"rates.{name}": f"{rate:g} Hz" for name, rate in scenario.rates}
     radii = [run.robot.radius for run in runs.values() if run.robot is not None]
     if scenario.crowd is not None and radii:
         response = scenario.crowd.robot_response
         perceived = dict.fromkeys(f"{radius + response.margin:.10g} m" for radius in radii)
-        found["perceived_radius"] = ", ".join(perceived)
+        conditions["perceived_radius"] = ", ".join(perceived)
         share = f" {response.ignoring:g}" if response.ignoring_fraction is not None else ""
         words = _own_words(response), f"{response.reaction}{share}", f"velocity {response.velocity}"
-        found["people_and_robot"] = ", ".join(words)
-    return found
+        conditions["people_and_robot"] = ", ".join(words)
+    return conditions
 
 
 def _own_words(response: RobotResponse) -> str:

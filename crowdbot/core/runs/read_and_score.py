@@ -159,11 +159,11 @@ def recorded_run(recording: Recording) -> RecordedRun:
 
 def reference_hashes(paths: Mapping[str, Path]) -> dict[str, str]:
     """Return the trajectory hashes of calibration runs by name, cached until the files change."""
-    found = {}
+    hashes = {}
     for name, path in paths.items():
         state = path.stat()
-        found[name] = _hash(path.resolve(), state.st_ino, state.st_mtime_ns, state.st_size)
-    return found
+        hashes[name] = _hash(path.resolve(), state.st_ino, state.st_mtime_ns, state.st_size)
+    return hashes
 
 
 @lru_cache(maxsize=64)

@@ -61,23 +61,23 @@ def find_source(
         InputError: there is no such run or file, or run.json is not a record of a run.
     """
     if path.is_dir():
-        found = _in_directory(path)
+        source = _in_directory(path)
     elif path.exists():
-        found = RecordingSource(path=path, recording=path)
+        source = RecordingSource(path=path, recording=path)
     else:
         raise InputError(f"{path}: no such run directory or recording")
     given = {"robot_alone": robot_alone, "crowd_alone": crowd_alone}
-    found = replace(
-        found,
-        hashes={name: sha for name, sha in found.hashes.items() if given.get(name) is None},
-        robot_alone=robot_alone or found.robot_alone,
-        crowd_alone=crowd_alone or found.crowd_alone,
+    source = replace(
+        source,
+        hashes={name: sha for name, sha in source.hashes.items() if given.get(name) is None},
+        robot_alone=robot_alone or source.robot_alone,
+        crowd_alone=crowd_alone or source.crowd_alone,
     )
     for part in ("recording", "robot_alone", "crowd_alone"):
-        file = getattr(found, part)
+        file = getattr(source, part)
         if file is not None and not file.is_file():
             raise InputError(f"{path}: {part.replace('_', ' ')} not found: {file}")
-    return found
+    return source
 
 
 def _is_run(record: Path, root: Path) -> bool:

@@ -93,11 +93,11 @@ def rescore(request: RescoreRequest, registry: Registry) -> Rescored:
         CrowdbotError: it cannot be read, or a metric failed.
     """
     source, run = RecordingSource(path=Path(), recording=Path()), None
-    found: list[RobotRecording] = []
+    recordings: list[RobotRecording] = []
 
     def check(recording: Recording, robot: str | None) -> Trajectories:
-        found.append(_checked(recording, robot, allowed=request.allow_incomplete))
-        return found[-1].run
+        recordings.append(_checked(recording, robot, allowed=request.allow_incomplete))
+        return recordings[-1].run
 
     def read(file: Path | None, robot: str | None = None) -> Trajectories | None:
         if file is None:
@@ -128,8 +128,8 @@ def rescore(request: RescoreRequest, registry: Registry) -> Rescored:
     return Rescored(
         source=source,
         scores=tuple(scores),
-        until=None if run is None else found[0].until,
-        complete=all(one.complete for one in found),
+        until=None if run is None else recordings[0].until,
+        complete=all(one.complete for one in recordings),
     )
 
 

@@ -152,9 +152,9 @@ def damage(
             size = (directory / name).stat().st_size
         except OSError:
             return f"{name} is missing"
-        wanted = listed.get(name)
-        if wanted is not None and size != wanted:
-            return f"{name} has {size} bytes instead of {wanted}"
+        expected = listed.get(name)
+        if expected is not None and size != expected:
+            return f"{name} has {size} bytes instead of {expected}"
     return changed(directory, record, names if recording else names[1:])
 
 

@@ -80,8 +80,8 @@ def solids_of(
         people: their bodies; None without people.
     """
     lines = ~parts.sides()
-    whom = parts.stops_robot.astype(int) + 2 * parts.stops_crowd
-    walls = np.column_stack([parts.walls, parts.wall_heights, whom])[lines & (whom > 0)]
+    stops = parts.stops_robot.astype(int) + 2 * parts.stops_crowd
+    walls = np.column_stack([parts.walls, parts.wall_heights, stops])[lines & (stops > 0)]
     solids = zip(parts.solids, parts.solid_heights.tolist(), strict=True)
     light = {} if parts.light is None else {"light": _light(parts.light)}
     return {

@@ -257,9 +257,9 @@ def _change(document: OpenDocument, lines: Sequence[str], registry: Registry) ->
         try:
             after = open_document(str(copy), registry).suite
         except SpecError:
-            wanted = "\n".join(f"  {line}" for line in lines)
+            block = "\n".join(f"  {line}" for line in lines)
             raise InputError(
-                f"{document.name}: nothing can be added at its end; write this into it:\n{wanted}"
+                f"{document.name}: nothing can be added at its end; write this into it:\n{block}"
             ) from None
         if after.hidden:
             _check_drawn(document, after, registry)
@@ -275,12 +275,12 @@ def _check_drawn(document: OpenDocument, after: ParsedSuite, registry: Registry)
         raise InputError(f"{document.name}: no people are drawn from suite.seed: nothing to hide")
 
 
-def _named(found: Diagnostic, name: str) -> Diagnostic:
+def _named(diagnostic: Diagnostic, name: str) -> Diagnostic:
     """Return an error of a copy under the name of its original."""
-    source = found.mark.source
+    source = diagnostic.mark.source
     if not source.name.endswith(_COPY):
-        return found  # in a file that the document includes
-    return replace(found, mark=replace(found.mark, source=replace(source, name=name)))
+        return diagnostic  # in a file that the document includes
+    return replace(diagnostic, mark=replace(diagnostic.mark, source=replace(source, name=name)))
 
 
 @contextlib.contextmanager

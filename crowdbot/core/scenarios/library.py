@@ -267,12 +267,12 @@ def _bare(expansion: Expansion, pattern: str) -> str:
     return pattern.removeprefix(f"{expansion.suite_id}/")
 
 
-def _only(expansion: Expansion, found: Sequence[Scenario], why: str) -> Scenario:
-    if len(found) == 1:
-        return found[0]
-    some = ", ".join(s.id for s in found[:3]) + (", …" if len(found) > 3 else "")
+def _only(expansion: Expansion, scenarios: Sequence[Scenario], why: str) -> Scenario:
+    if len(scenarios) == 1:
+        return scenarios[0]
+    some = ", ".join(s.id for s in scenarios[:3]) + (", …" if len(scenarios) > 3 else "")
     raise InputError(
-        f"{why}: {len(found)} scenarios of {expansion.suite_id} match ({some}); "
+        f"{why}: {len(scenarios)} scenarios of {expansion.suite_id} match ({some}); "
         "give one id, e.g. from 'crowdbot expand'"
     )
 

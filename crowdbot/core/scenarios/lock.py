@@ -247,16 +247,16 @@ def _scenarios(
     locked: Mapping[str, LockedTable],
     fields: FieldHashes,
 ) -> dict[str, LockedScenario]:
-    found = {}
+    scenarios = {}
     for scenario in expansion.scenarios:
         name = by_inputs[population_inputs(scenario)] if scenario.crowd is not None else None
-        found[scenario.id] = LockedScenario(
+        scenarios[scenario.id] = LockedScenario(
             spec=spec_of(scenario, registry),
             realisation=locked[name].realisation if name else Realisation.nobody().hash,
             draw=name,
             varied=list(fields.varied[scenario.id]),
         )
-    return found
+    return scenarios
 
 
 def _write(path: Path, content: bytes) -> None:

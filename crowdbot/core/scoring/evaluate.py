@@ -314,8 +314,8 @@ def _what_is_wrong(scores: Sequence[object], component: Component[MetricSpec]) -
 def _of_variants(scores: Sequence[Score], variants: str | Sequence[str]) -> list[Score]:
     if variants == "all":
         return list(scores)
-    wanted = set(texts_of("variants", variants))
+    chosen = set(texts_of("variants", variants))
     known = {s.variant for s in scores}
-    for name in sorted(wanted - known):
+    for name in sorted(chosen - known):
         raise UnknownNameError("variant", name, known)
-    return [s for s in scores if s.variant in wanted]
+    return [s for s in scores if s.variant in chosen]

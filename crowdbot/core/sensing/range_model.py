@@ -107,34 +107,34 @@ def _errors(
     """
     answer = generator.errors(immutable(distance), rng)
     try:
-        found = plain_numbers(answer)
+        errors = plain_numbers(answer)
     except (TypeError, ValueError) as error:
         raise ValueError(f"{_who(generator)}: errors returned {error}") from None
-    if found.shape != distance.shape:
-        shapes = f"{found.shape} for {distance.shape}"
+    if errors.shape != distance.shape:
+        shapes = f"{errors.shape} for {distance.shape}"
         raise ValueError(f"{_who(generator)}: errors returned shape {shapes}")
     # The sum of squares is at least the largest square, and faster.
-    if not np.vdot(found, found) < largest * largest:  # or NaN
-        _check_hits(found[distance < np.inf], largest, _who(generator))
-    return found
+    if not np.vdot(errors, errors) < largest * largest:  # or NaN
+        _check_hits(errors[distance < np.inf], largest, _who(generator))
+    return errors
 
 
 def _who(generator: NoiseGenerator) -> str:
     return f"noise of {type(generator).__module__}.{type(generator).__name__}"
 
 
-def _check_hits(errors: Array, largest: float, who: str) -> None:
+def _check_hits(errors: Array, largest: float, source: str) -> None:
     """Refuse invalid errors (hits,) of hits.
 
     Raises:
         ValueError: an error is not finite, or too large.
     """
     if not np.isfinite(errors).all():
-        raise ValueError(f"{who}: errors returned something that is not finite for what was hit")
+        raise ValueError(f"{source}: errors returned something that is not finite for what was hit")
     wrong = errors[np.abs(errors) > largest]
     if len(wrong):
         raise ValueError(
-            f"{who}: errors returned {wrong[0]:.3g} m for what was hit; write at most "
+            f"{source}: errors returned {wrong[0]:.3g} m for what was hit; write at most "
             f"{largest:.3g} m, beyond which every reading is out of range"
         )
 

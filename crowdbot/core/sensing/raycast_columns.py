@@ -183,16 +183,16 @@ def _cover(azimuth: Array, low: float, high: float, runs: Indices) -> int:
 @kernel
 def _insert(
     columns: _Columns, c: int,
-    near: float, far: float, facing: float, low: float, high: float, who: int,
+    near: float, far: float, facing: float, low: float, high: float, owner: int,
 ) -> None:  # fmt: skip
     """Insert a body into column c, nearest first; equal distances keep the insertion order."""
-    _insert_before(columns, c, near, far, facing, low, high, who, _LAST)
+    _insert_before(columns, c, near, far, facing, low, high, owner, _LAST)
 
 
 @inline_kernel
 def _insert_before(
     columns: _Columns, c: int,
-    near: float, far: float, facing: float, low: float, high: float, who: int, rank: int,
+    near: float, far: float, facing: float, low: float, high: float, owner: int, rank: int,
 ) -> None:  # fmt: skip
     """Like `_insert`, but before bodies at the same distance whose owner is below ``rank``."""
     work, filled = columns.work, columns.filled
@@ -209,7 +209,7 @@ def _insert_before(
                 work[c, n, column] = work[c, n - 1, column]
             n -= 1
         work[c, n, NEAR], work[c, n, FAR], work[c, n, FACING] = near, far, facing
-        work[c, n, LOW], work[c, n, HIGH], work[c, n, WHO] = low, high, who
+        work[c, n, LOW], work[c, n, HIGH], work[c, n, WHO] = low, high, owner
 
 
 @inline_kernel
@@ -220,7 +220,7 @@ def _is_before(near: float, rank: int, other: float, owner: float) -> bool:
 
 @kernel
 def _add_disc(
-    px: float, py: float, r: float, bottom: float, top: float, yaw: float, who: int,
+    px: float, py: float, r: float, bottom: float, top: float, yaw: float, owner: int,
     columns: _Columns,
 ) -> None:  # fmt: skip
     """Insert an upright cylinder, with its axis at (px, py) from the rays' origin."""
@@ -244,7 +244,7 @@ def _add_disc(
                 continue
             near = max(0.0, along - depth)
             facing = 1.0 if near == 0.0 or r == 0.0 else min(1.0, depth / r)
-            _insert(columns, c, near, along + depth, facing, bottom, top, who)
+            _insert(columns, c, near, along + depth, facing, bottom, top, owner)
 
 
 @kernel
@@ -290,7 +290,7 @@ def _covered_roughly(
 
 @kernel
 def _add_wall(
-    ox: float, oy: float, yaw: float, wall: Array, heights: Array, who: int, reach: float,
+    ox: float, oy: float, yaw: float, wall: Array, heights: Array, owner: int, reach: float,
     columns: _Columns,
 ) -> None:  # fmt: skip
     """Insert an upright plate into every column that meets it within ``reach``."""
@@ -310,7 +310,7 @@ def _add_wall(
             s = (px * sin[c] - py * cos[c]) / across
             if t < 0.0 or t > reach or s < -OVERLAP or s > 1.0 + OVERLAP:
                 continue
-            _insert(columns, c, t, t, abs(across) / length, heights[0], heights[1], who)
+            _insert(columns, c, t, t, abs(across) / length, heights[0], heights[1], owner)
 
 
 @kernel
@@ -414,7 +414,7 @@ def _farthest(low: float, high: float, directions: Array) -> float:
 @inline_kernel
 def _add_visible_wall(
     ox: float, oy: float, oz: float, yaw: float, wall: Array, heights: Array, low: float,
-    high: float, who: int, most: float, reach: float, columns: _Columns, directions: Array,
+    high: float, owner: int, most: float, reach: float, columns: _Columns, directions: Array,
 ) -> None:  # fmt: skip
     """Insert an upright plate into every column in which no nearer one, as low and high, hides it.
 
@@ -454,7 +454,9 @@ def _add_visible_wall(
                 continue
             if length == 0.0:  # most plates are hidden
                 length = math.hypot(ex, ey)
-            _insert_before(columns, c, t, t, abs(across) / length, heights[0], heights[1], who, who)
+            _insert_before(
+                columns, c, t, t, abs(across) / length, heights[0], heights[1], owner, owner
+            )
             wider = low <= oz <= high and low <= lows[c] and high >= highs[c]
             if wider and (t < hider[c] or low < lows[c] or high > highs[c]):
                 hider[c], lows[c], highs[c] = t, low, high

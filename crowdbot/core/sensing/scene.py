@@ -130,8 +130,8 @@ class Scene:
         discs[people:fixed, 3:] = self.pillar_heights
         owner = np.arange(people) // PARTS
         pillar = -(2 + len(self._walls) + np.arange(len(self._pillars)))
-        whose = np.concatenate([owner, pillar, self.things[:, 0]]).astype(np.int64)
-        return discs, whose
+        owners = np.concatenate([owner, pillar, self.things[:, 0]]).astype(np.int64)
+        return discs, owners
 
     def update(
         self,

@@ -105,12 +105,12 @@ class WallsNear:
         )  # fmt: skip
         return self._chosen(indices[~hidden], bound[~hidden])
 
-    def _with_moving(self, found: Walls) -> Walls:
-        assert found.indices is not None
+    def _with_moving(self, walls: Walls) -> Walls:
+        assert walls.indices is not None
         moving = np.arange(self._fixed, len(self._all.segments))
-        bound = np.zeros(len(found.indices) + len(moving))
-        bound[found.order] = found.bound
-        return self._chosen(np.concatenate([found.indices, moving]), bound)
+        bound = np.zeros(len(walls.indices) + len(moving))
+        bound[walls.order] = walls.bound
+        return self._chosen(np.concatenate([walls.indices, moving]), bound)
 
     def _chosen(self, indices: Indices, bound: Array) -> Walls:
         segments, heights = self._all.segments[indices], self._all.heights[indices]

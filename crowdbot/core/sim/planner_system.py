@@ -312,8 +312,8 @@ def _slew_planar(
     return v + ahead * step / length, vy + aside * step / length
 
 
-def _slew(now: float, wanted: float, step: float) -> float:
-    return now + min(step, max(-step, wanted - now))
+def _slew(now: float, target: float, step: float) -> float:
+    return now + min(step, max(-step, target - now))
 
 
 def add_planner(

@@ -143,12 +143,12 @@ def choosers(engine: CrowdEngine | None) -> list[CandidateGroup]:
     """Return people with known candidate velocities; empty without an engine."""
     if engine is None:
         return []
-    a, found = engine.agents, list[CandidateGroup]()
+    a, groups = engine.agents, list[CandidateGroup]()
     for number, policy in enumerate(engine.policies):
         candidates = candidates_of(policy)
         rows = np.flatnonzero(a.policy == number)
         if candidates is not None and len(rows):
-            found.append(
+            groups.append(
                 CandidateGroup(
                     candidates=candidates,
                     rows=rows,
@@ -157,7 +157,7 @@ def choosers(engine: CrowdEngine | None) -> list[CandidateGroup]:
                     max_acceleration=a.max_acceleration[rows],
                 )
             )
-    return found
+    return groups
 
 
 def goal_column_of(engine: CrowdEngine | None) -> int:

@@ -59,8 +59,8 @@ def write_replays(
 
 
 def _value(run: ClaimedRun) -> float | None:
-    wanted = (PRIMARY.metric, PRIMARY.variant)
-    return next((s.value for s in run.scores if (s.metric, s.variant) == wanted), None)
+    primary = (PRIMARY.metric, PRIMARY.variant)
+    return next((s.value for s in run.scores if (s.metric, s.variant) == primary), None)
 
 
 def _has_recording(entry: LeaderboardEntry, run: ClaimedRun) -> bool:

@@ -110,20 +110,20 @@ def compare(
 
 
 def with_verdict(
-    found: Comparison, judged: ComparisonVerdict, p_holm: float | None, alpha: float
+    comparison: Comparison, judged: ComparisonVerdict, p_holm: float | None, alpha: float
 ) -> Comparison:
     """Return the comparison with its verdict, which rests on means; ranks only describe."""
-    if found.verdict == "not ranked" or found.p is None:
-        return found
+    if comparison.verdict == "not ranked" or comparison.p is None:
+        return comparison
     verdict: Verdict = "not distinguishable"
     reason = judged.reason
     if p_holm is not None and p_holm <= alpha and judged.sign:
         verdict = "better" if judged.sign > 0 else "worse"
-    elif least_p(found.draws) > alpha:
-        reason = f"too few crowd draws: {found.draws}; no difference could be told from chance"
-    elif not found.wins and not found.losses and not reason:
-        reason = "every pair is equal" if not found.undecided else "no pair is decided"
-    return replace(found, p_holm=p_holm, verdict=verdict, reason=reason)
+    elif least_p(comparison.draws) > alpha:
+        reason = f"too few crowd draws: {comparison.draws}; no difference could be told from chance"
+    elif not comparison.wins and not comparison.losses and not reason:
+        reason = "every pair is equal" if not comparison.undecided else "no pair is decided"
+    return replace(comparison, p_holm=p_holm, verdict=verdict, reason=reason)
 
 
 # ----------------------------------------------------------------------- one pair
@@ -190,14 +190,18 @@ def _bounds(table: Table, head: Comparison) -> Bounds:
 
 
 def _with_rates(
-    found: Comparison, difference: Estimate, error: float | None, groups: Clusters, level: float
+    comparison: Comparison,
+    difference: Estimate,
+    error: float | None,
+    groups: Clusters,
+    level: float,
 ) -> Comparison:
     """Return a comparison of rates: rates of all runs together replace the means of pairs."""
     ends = (difference.value, difference.value)
     return replace(
-        found,
+        comparison,
         difference=difference,
-        bounds=(None, None) if None in found.bounds else ends,
+        bounds=(None, None) if None in comparison.bounds else ends,
         detectable=None if not error else error * reach(groups.freedom, level),
     )
 
@@ -235,7 +239,7 @@ def reach(freedom: int, level: float) -> float:
     return c.quantile_t(0.5 + level / 2, freedom) + c.quantile_t(_POWER, freedom)
 
 
-def _ranked(found: Comparison, pair: _Pair, groups: Clusters, level: float) -> Comparison:
+def _ranked(comparison: Comparison, pair: _Pair, groups: Clusters, level: float) -> Comparison:
     """Return the rank-based results over all pairs, which describe and decide nothing."""
     contrasts, undecided = pair.contrasts()
     ranks = double_ranks(contrasts)
@@ -246,7 +250,7 @@ def _ranked(found: Comparison, pair: _Pair, groups: Clusters, level: float) -> C
     shares = signed_ranks(contrasts, ranks).astype(float), ranks.astype(float)
     biserial = c.ratio(*shares, groups, level, (-1.0, 1.0))
     return replace(
-        found,
+        comparison,
         wins=int((contrasts > 0).sum()),
         losses=int((contrasts < 0).sum()),
         ties=int(((contrasts == 0) & ~undecided).sum()),

@@ -35,14 +35,14 @@ def effect_size(gains: Floats, groups: Clusters, level: float = 0.95) -> Estimat
         return Estimate(reason=ALL_EQUAL)
     gains = gains / float(np.abs(gains).max())  # squares of large numbers overflow
     centre, spread = float(gains.mean()), float(gains.std(ddof=1))
-    found = Estimate(value=centre / spread)
+    estimate = Estimate(value=centre / spread)
     error = c.ratio_error(gains, np.ones_like(gains), groups)
     if error is None:
-        return replace(found, reason=c.ONE_DRAW)
+        return replace(estimate, reason=c.ONE_DRAW)
     if error == 0.0:
-        return replace(found, reason=c.NO_SPREAD)
+        return replace(estimate, reason=c.NO_SPREAD)
     low, high = _noncentrality(centre / error, groups.freedom, level)
-    return replace(found, low=low * error / spread, high=high * error / spread)
+    return replace(estimate, low=low * error / spread, high=high * error / spread)
 
 
 def _noncentrality(t: float, freedom: int, level: float) -> tuple[float, float]:

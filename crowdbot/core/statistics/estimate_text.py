@@ -19,22 +19,22 @@ _MOST, _LARGE, _SMALL = 6, 1e6, 1e-4
 _EXACT = Context(prec=800)  # a double has at most 767 digits
 
 
-def estimate_text(found: Estimate, minus: str = _MINUS) -> tuple[str, str]:
+def estimate_text(estimate: Estimate, minus: str = _MINUS) -> tuple[str, str]:
     """Return the value, and its interval in brackets; "–" and nothing if there is none."""
-    if found.value is None:
+    if estimate.value is None:
         return NOTHING, ""
-    width = 0.0 if found.low is None or found.high is None else found.high - found.low
-    decimals = _decimals(abs(found.value), width if math.isfinite(width) else 0.0)
-    value = number_text(found.value, decimals, minus)
-    if found.low is None or found.high is None or not math.isfinite(width):
+    width = 0.0 if estimate.low is None or estimate.high is None else estimate.high - estimate.low
+    decimals = _decimals(abs(estimate.value), width if math.isfinite(width) else 0.0)
+    value = number_text(estimate.value, decimals, minus)
+    if estimate.low is None or estimate.high is None or not math.isfinite(width):
         return value, ""
-    low, high = (number_text(x, decimals, minus) for x in (found.low, found.high))
+    low, high = (number_text(x, decimals, minus) for x in (estimate.low, estimate.high))
     return value, f"[{low}, {high}]"
 
 
-def joined_text(found: Estimate) -> str:
+def joined_text(estimate: Estimate) -> str:
     """Return value and interval in one line."""
-    return " ".join(filter(None, estimate_text(found)))
+    return " ".join(filter(None, estimate_text(estimate)))
 
 
 def range_text(ends: tuple[float | None, float | None]) -> str:

@@ -153,12 +153,12 @@ def lead_over(table: Table, name: Name, planner: str, other: str, *, level: floa
     )  # fmt: skip
 
 
-def _turned(found: Estimate, sign: float) -> Estimate:
-    if sign > 0 or found.value is None:
-        return found
-    low = None if found.high is None else -found.high
-    high = None if found.low is None else -found.low
-    return Estimate(value=-found.value, low=low, high=high, reason=found.reason)
+def _turned(estimate: Estimate, sign: float) -> Estimate:
+    if sign > 0 or estimate.value is None:
+        return estimate
+    low = None if estimate.high is None else -estimate.high
+    high = None if estimate.low is None else -estimate.low
+    return Estimate(value=-estimate.value, low=low, high=high, reason=estimate.reason)
 
 
 def _lacking(table: Table, name: Name, *planners: str) -> int:
@@ -169,19 +169,19 @@ def _lacking(table: Table, name: Name, *planners: str) -> int:
 
 
 def _verdict(
-    found: Comparison, by: Estimate, lacking: int, gone: int, level: float
+    comparison: Comparison, by: Estimate, lacking: int, gone: int, level: float
 ) -> tuple[LeadVerdict, str]:
-    if found.better == "none":
+    if comparison.better == "none":
         return "not distinguishable", "nothing says which values are better"
     if by.low is None or by.high is None:
-        return "not distinguishable", by.reason or found.reason
+        return "not distinguishable", by.reason or comparison.reason
     if lacking:  # leaving out runs that went badly must not be an advantage
-        return "not distinguishable", f"{lacking} of {found.pairs} pairs have no value"
+        return "not distinguishable", f"{lacking} of {comparison.pairs} pairs have no value"
     if gone and by.low > 0.0:
         return "not distinguishable", f"{plural(gone, 'run')} of the planner missing"
     # An interval needs two draws; with so few, any difference may be chance.
-    if least_p(found.draws) > 1.0 - level:
-        return "not distinguishable", f"{_TOO_FEW}: {found.draws}"
+    if least_p(comparison.draws) > 1.0 - level:
+        return "not distinguishable", f"{_TOO_FEW}: {comparison.draws}"
     if by.low > 0.0:
         return "ahead", ""
     return ("behind", "") if by.high < 0.0 else ("not distinguishable", "")

@@ -125,12 +125,12 @@ def by_group(
 def _groups(table: Table, results: Results, by: Sequence[str]) -> Mapping[_Group, _Rows]:
     """Return labels -> rows, in the order of the runs."""
     places = {key: i for i, key in enumerate(table.keys)}
-    found: dict[_Group, dict[str, NDArray[np.bool_]]] = {}
+    groups: dict[_Group, dict[str, NDArray[np.bool_]]] = {}
     for one in _tried(table, results):
-        group = found.setdefault(tuple(_label(one, name) for name in by), {})
+        group = groups.setdefault(tuple(_label(one, name) for name in by), {})
         rows = group.setdefault(one.planner, np.zeros(len(places), np.bool_))
         rows[places[_key(one)]] = True
-    return found
+    return groups
 
 
 def _key(one: RunRow | Failure) -> Key:

@@ -77,11 +77,11 @@ def pareto(summary: Summary) -> tuple[ParetoPoint, ...]:
 
 def label_heights(points: Sequence[ParetoPoint]) -> dict[str, float]:
     """Return the y position of each planner's name beside its point, px, without overlap."""
-    found, most = dict[str, float](), HEIGHT
+    heights, most = dict[str, float](), HEIGHT
     for point in sorted(points, key=lambda p: (-p.plot["y"], p.planner)):
         most = min(point.plot["y"] - 8.0, most - _LINE)
-        found[point.planner] = round(most, 1)
-    return found
+        heights[point.planner] = round(most, 1)
+    return heights
 
 
 def _marked(point: ParetoPoint, points: Sequence[ParetoPoint]) -> ParetoPoint:

@@ -79,11 +79,11 @@ def least_draws(tests: int, alpha: float) -> int:
     return draws
 
 
-def draws_needed(found: Comparison, tests: int, alpha: float, level: float) -> int | None:
+def draws_needed(comparison: Comparison, tests: int, alpha: float, level: float) -> int | None:
     """Return the draws that would detect the observed difference with probability 0.8.
 
     Args:
-        found: the comparison, with its mean and detectable difference.
+        comparison: the comparison, with its mean and detectable difference.
         tests: number of tests that share ``alpha``.
         alpha: probability of any false verdict.
         level: confidence level used for ``found.detectable``.
@@ -91,12 +91,12 @@ def draws_needed(found: Comparison, tests: int, alpha: float, level: float) -> i
     Returns:
         None without a difference or standard error, or if more than `MOST_DRAWS` would be needed.
     """
-    size = abs(found.difference.value or 0.0)
-    if not size or not found.detectable or found.draws < 2:
+    size = abs(comparison.difference.value or 0.0)
+    if not size or not comparison.detectable or comparison.draws < 2:
         return None
-    error = found.detectable / reach(found.draws - 1, level)
+    error = comparison.detectable / reach(comparison.draws - 1, level)
     strict = 1.0 - alpha / tests
-    spread = error * math.sqrt(found.draws)  # standard error of one draw
+    spread = error * math.sqrt(comparison.draws)  # standard error of one draw
     low = max(2, least_draws(tests, alpha))
     if _finds(size, spread, low, strict):
         return low

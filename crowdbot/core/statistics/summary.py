@@ -162,7 +162,7 @@ def summarise(
     )
 
 
-def _families(found: Sequence[Comparison], marks: Set[str]) -> Iterator[dict[int, float]]:
+def _families(comparisons: Sequence[Comparison], marks: Set[str]) -> Iterator[dict[int, float]]:
     """Yield index of a comparison -> corrected p: first for the four scores, then for all others.
 
     Comparisons with floors and ceilings (``marks``) are separate families: running them must not
@@ -171,7 +171,7 @@ def _families(found: Sequence[Comparison], marks: Set[str]) -> Iterator[dict[int
     for marked, main in product((False, True), (True, False)):
         here = {
             place: x.p
-            for place, x in enumerate(found)
+            for place, x in enumerate(comparisons)
             if x.p is not None
             and is_main(x.metric, x.variant) is main
             and bool({x.a, x.b} & marks) is marked

@@ -76,12 +76,12 @@ def smallest_p(participants: int) -> float:
     return least_p(participants)
 
 
-def adjusted(found: Sequence[StudyFinding]) -> list[StudyFinding]:
+def adjusted(findings: Sequence[StudyFinding]) -> list[StudyFinding]:
     """Return findings with Holm's correction for all tests among them."""
-    tested = [k for k, f in enumerate(found) if f.p is not None]
-    p_values = np.array([found[k].p for k in tested], dtype=np.float64)
+    tested = [k for k, f in enumerate(findings) if f.p is not None]
+    p_values = np.array([findings[k].p for k in tested], dtype=np.float64)
     by_index = dict(zip(tested, holm(p_values).tolist() if tested else [], strict=True))
-    return [replace(f, adjusted=by_index.get(k)) for k, f in enumerate(found)]
+    return [replace(f, adjusted=by_index.get(k)) for k, f in enumerate(findings)]
 
 
 def _by_participant(rows: Sequence[Row], condition: str, score: str) -> dict[str, float]:

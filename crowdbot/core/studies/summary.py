@@ -34,11 +34,11 @@ def participant_states(study: Study, folder: Path) -> list[ParticipantState]:
     Raises:
         InputError: a file of the data is damaged.
     """
-    found = []
+    states = []
     for participant in study.spec.people:
         progress = StudyProgress(study, folder, participant)
         now, steps = progress.current(), progress.steps
-        found.append(
+        states.append(
             ParticipantState(
                 participant=participant,
                 order=tuple(condition_order(study, participant)),
@@ -47,4 +47,4 @@ def participant_states(study: Study, folder: Path) -> list[ParticipantState]:
                 next_step="" if now is None else now.name,
             )
         )
-    return found
+    return states

@@ -55,15 +55,15 @@ def number_of(name: str, value: Any, unit: str = "") -> float:
     Raises:
         InputError: it is not one; the message names the unit.
     """
-    wanted = f"a number in {unit}" if unit else "a number"
+    expected = f"a number in {unit}" if unit else "a number"
     if isinstance(value, bool | str | bytes | complex) or not hasattr(value, "__float__"):
-        _refuse(name, value, wanted)
+        _refuse(name, value, expected)
     try:
         number = float(value)
     except (TypeError, ValueError, OverflowError):
-        _refuse(name, value, wanted)
+        _refuse(name, value, expected)
     if not math.isfinite(number):
-        raise InputError(f"{name} must be {wanted}, not {number}")
+        raise InputError(f"{name} must be {expected}, not {number}")
     return number
 
 
@@ -73,15 +73,15 @@ def whole_number_of(name: str, value: Any, least: int = 0) -> int:
     Raises:
         InputError: it is not one.
     """
-    wanted = f"a whole number, at least {least}"
+    expected = f"a whole number, at least {least}"
     if isinstance(value, bool) or not hasattr(value, "__index__"):
-        _refuse(name, value, wanted)
+        _refuse(name, value, expected)
     try:
         number = operator.index(value)
     except TypeError:  # an array
-        _refuse(name, value, wanted)
+        _refuse(name, value, expected)
     if number < least:
-        raise InputError(f"{name} must be {wanted}, not {number}")
+        raise InputError(f"{name} must be {expected}, not {number}")
     return number
 
 
@@ -131,6 +131,6 @@ def mapping_of(name: str, value: Any, of: str) -> Mapping[Any, Any]:
     return mapping
 
 
-def _refuse(name: str, value: object, wanted: str, hint: str = "") -> Any:
+def _refuse(name: str, value: object, expected: str, hint: str = "") -> Any:
     advice = f"; {hint}" if hint else ""
-    raise InputError(f"{name} must be {wanted}, not {kind_of(value)}{advice}")
+    raise InputError(f"{name} must be {expected}, not {kind_of(value)}{advice}")

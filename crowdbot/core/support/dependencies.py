@@ -53,11 +53,11 @@ def _reached(root: str, extras: frozenset[str]) -> set[str]:
     waiting, found = [(root, extras)], set[str]()
     done = set[tuple[str, frozenset[str]]]()
     while waiting:
-        name, wanted = waiting.pop()
-        if (name, wanted) in done:
+        name, requested = waiting.pop()
+        if (name, requested) in done:
             continue
-        done.add((name, wanted))
-        for requirement in _requirements(name, wanted):
+        done.add((name, requested))
+        for requirement in _requirements(name, requested):
             other = canonicalize_name(requirement.name)
             if _is_installed(other):
                 found.add(other)

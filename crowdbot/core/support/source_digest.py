@@ -172,15 +172,15 @@ def _with_helpers(file: Path) -> set[Path]:
 
 def _helpers_of(folder: Path, files: Iterable[Path], own: set[str]) -> set[Path]:
     """Return the files of modules in a folder that some files import, directly or indirectly."""
-    waiting, found = list(files), set[Path]()
+    waiting, helpers = list(files), set[Path]()
     seen = set(waiting)
     while waiting:
         for name in _imported(waiting.pop()) - _FOREIGN - own:
             new = set(_beside(folder, name)) - seen
-            found |= new
+            helpers |= new
             seen |= new
             waiting += [f for f in new if f.suffix == ".py"]
-    return found
+    return helpers
 
 
 def _imported(file: Path) -> set[str]:

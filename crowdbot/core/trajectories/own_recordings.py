@@ -64,7 +64,7 @@ def columns_of(
     stamps = [t.stamps() for t in (robot, agents) if t is not None]
     if not stamps:
         raise InputError("trajectories: neither a robot nor agents")
-    if len({found is None for found in stamps}) > 1:
+    if len({columns is None for columns in stamps}) > 1:
         raise InputError(_TWO_CLOCKS.format(agents.name if agents else ""))
     origin = None if stamps[0] is None else int(stamps[0].min(initial=_LATEST))
     rows = None if robot is None else _robot_rows(robot, origin)

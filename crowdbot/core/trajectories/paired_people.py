@@ -86,7 +86,7 @@ class _TripSamples:
 class _Pair:
     """One trip of a person with and without the robot."""
 
-    who: int
+    person: int
     one: _TripSamples
     two: _TripSamples
 
@@ -126,7 +126,7 @@ def _whole_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> 
             left_out += 1
             continue
         effect = float(pair.laid[0].max()), _delay(pair)
-        found.setdefault(pair.who, []).append((*effect, *_walked(pair.two)))
+        found.setdefault(pair.person, []).append((*effect, *_walked(pair.two)))
     people = [np.array(trips) for trips in found.values()]
     return Effects(
         displacement=np.array([trips[:, 0].max() for trips in people]),
@@ -142,9 +142,9 @@ def _meeting_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -
     for pair in _pairs(run, alone, pairing.jump_speed):
         one = pair.one
         first, last = _meeting(distance[one.rows, one.column], run.t[one.rows], pairing)
-        if pair.who in met or first < 0:
+        if pair.person in met or first < 0:
             continue
-        met.add(pair.who)
+        met.add(pair.person)
         if _starts_apart(pair, pairing) or _walks_otherwise(pair, first, pairing):
             left_out += 1
             continue

@@ -86,11 +86,11 @@ def _contacts(
     )
 
 
-def _ends(run: Trajectories, found: Contacts, jump_speed: float, release_gap: float) -> Array:
+def _ends(run: Trajectories, contacts: Contacts, jump_speed: float, release_gap: float) -> Array:
     """Return the last sample times (K,) at which the surfaces are not yet apart, s."""
     pair = encounter(run, jump_speed)
-    ends = found.time.copy()
-    for k, (sample, agent) in enumerate(zip(found.sample, found.agent, strict=True)):
+    ends = contacts.time.copy()
+    for k, (sample, agent) in enumerate(zip(contacts.sample, contacts.agent, strict=True)):
         near = pair.gap[sample + 1 :, agent] <= release_gap
         near[1:] &= pair.valid[sample + 1 :, agent]
         lasts = len(near) if near.all() else int(near.argmin())

@@ -162,8 +162,8 @@ def _in_messages(ours: str, header: Sequence[str]) -> dict[str, int]:
     return {ours: found[0]} if len(found) == 1 else {}
 
 
-def _refuse_twins(name: str, header: Sequence[str], wanted: Iterable[int]) -> None:
-    for i in wanted:
+def _refuse_twins(name: str, header: Sequence[str], used: Iterable[int]) -> None:
+    for i in used:
         if list(header).count(header[i]) > 1:
             raise InputError(f"{name}:1: two columns are called '{header[i]}'; rename one")
 

@@ -67,7 +67,7 @@ def _robot(name: str, robot: Robot, registry: Registry, target: Target | None) -
         radius=body.reach,
         outline=tuple(map(tuple, body.outline(x, y, yaw).tolist())),
         goal=robot.task.zone or "",
-        wanted=() if target is None else tuple(target.rows.tolist()),
+        targets=() if target is None else tuple(target.rows.tolist()),
         sensors=tuple(_sectors(robot, x, y, yaw, model.base_height)),
     )
 

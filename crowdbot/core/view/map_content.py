@@ -58,7 +58,7 @@ class RobotView:
     yaw: float
     radius: float
     goal: str
-    wanted: tuple[int, ...] = ()
+    targets: tuple[int, ...] = ()
     sensors: tuple[Sector, ...] = ()
     outline: tuple[Point, ...] = ()
 
@@ -194,7 +194,7 @@ def _people(content: MapContent, world: Map) -> Iterator[Shape]:
             role=f"person-{shade}",
             about=_about(people, i),
         )
-    for i in sorted({row for robot in content.robots for row in robot.wanted}):
+    for i in sorted({row for robot in content.robots for row in robot.targets}):
         at = world.at(float(people.x[i]), float(people.y[i]))
         yield Disc(centre=at, radius=float(people.radius[i]) * world.scale + 4.0, role="wanted")
     for i in range(len(people)):

@@ -128,10 +128,10 @@ def _robot_entries(content: MapContent) -> Iterator[tuple[str, str]]:
     if not content.robots:
         return
     yield "robot", "robot"
-    wanted = any(robot.wanted for robot in content.robots)
-    if not wanted or any(robot.goal for robot in content.robots):
+    has_target = any(robot.targets for robot in content.robots)
+    if not has_target or any(robot.goal for robot in content.robots):
         yield "goal", "its goal"
-    if wanted:
+    if has_target:
         yield "wanted", "person of its task"
 
 

@@ -38,7 +38,7 @@ def people_at(
 ) -> Iterator[Shape]:
     """Yield people, coloured by their speed, with their direction; the one involved is named."""
     crowd = people(run)
-    wanted = () if run.person is None else members_of(crowd, run.person).tolist()
+    members = () if run.person is None else members_of(crowd, run.person).tolist()
     for i in range(len(crowd.id)):
         x, y = float(crowd.x[sample, i]), float(crowd.y[sample, i])
         if not (
@@ -50,7 +50,7 @@ def people_at(
         shade = min(len(SPEEDS) - 1, int(speed / FASTEST * len(SPEEDS)))
         radius = float(crowd.radius[i]) * world.scale
         yield Disc(centre=world.at(x, y), radius=radius, role=f"person-{shade}")
-        if i in wanted:
+        if i in members:
             yield Disc(centre=world.at(x, y), radius=radius + 4.0, role="wanted")
         if speed > 0.05:
             yield from arrow(world, x, y, math.atan2(vy, vx), speed)

@@ -34,15 +34,15 @@ class Checks:
 
     def of(self, scenario: Scenario, tree: Node) -> list[Diagnostic]:
         """Return all contradictions of a scenario, with positions in its source tree."""
-        found, facts = list[Diagnostic](), Facts(scenario, tree)
+        diagnostics, facts = list[Diagnostic](), Facts(scenario, tree)
         for check, parts in _CHECKS:
             key = (check, *(id(tree.child(part)) for part in parts))
             if key not in self._passed:
                 wrong = list(check(facts))
-                found += wrong
+                diagnostics += wrong
                 if not wrong:
                     self._passed.add(key)
-        return found
+        return diagnostics
 
 
 def _check_kinds(part: str, facts: Facts) -> Iterator[Diagnostic]:

@@ -137,9 +137,9 @@ def diagnose(error: Error, tree: Node, model: type[BaseModel]) -> Diagnostic:
     if kind in ("missing", "union_tag_not_found"):
         if isinstance(loc[-1], int):
             count = len(place.node.value) if isinstance(place.node.value, tuple) else 0
-            wanted = [len(get_args(t)) for t in place.types if get_origin(t) is tuple]
+            lengths = [len(get_args(t)) for t in place.types if get_origin(t) is tuple]
             text = (
-                f"{place.name} has {count} entries, {f'not {wanted[0]}' if wanted else 'too few'}"
+                f"{place.name} has {count} entries, {f'not {lengths[0]}' if lengths else 'too few'}"
             )
             return Diagnostic("E114", text, place.node.mark)
         return missing_field(tree, place, str(loc[-1]) if kind == "missing" else "kind")
@@ -253,19 +253,21 @@ def _bad_value(error: Error, kind: str, place: TreePlace) -> tuple[str, str, str
         return "E116", f"{name} {text}", "it is the name of a folder"
     if kind == "string_pattern_mismatch":
         return "E116", f"{name}: {given} {_form(context['pattern'])}", ""
-    wanted = _TYPES.get(kind.split("_")[0])
-    if wanted and kind != "value_error":
+    expected = _TYPES.get(kind.split("_")[0])
+    if expected and kind != "value_error":
         scalar = isinstance(place.node.value, int | float)
-        hint = "quote it if it is text" if wanted == "text" and scalar else _as_map(wanted, place)
-        return "E111", f"{name} must be {wanted}, not {given}", hint
+        hint = (
+            "quote it if it is text" if expected == "text" and scalar else _as_map(expected, place)
+        )
+        return "E111", f"{name} must be {expected}, not {given}", hint
     return "E115", f"{name}: {text}", ""
 
 
-def _as_map(wanted: str, place: TreePlace) -> str:
+def _as_map(expected: str, place: TreePlace) -> str:
     """Return how to write a map in place of another value."""
-    if wanted == "a map of names":
+    if expected == "a map of names":
         return "write {NAME: …}"
-    if wanted != "a map of fields":
+    if expected != "a map of fields":
         return ""
     if any(hasattr(t, "category") for t in place.types):
         return f"write {{kind: {place.node.value if isinstance(place.node.value, str) else '…'}}}"

@@ -55,11 +55,11 @@ def check_descriptions(facts: Facts) -> Iterator[Diagnostic]:
         named = [(part, own, (*path, "model", *at)) for part, own, at in robot.model.named()]
         sensors = robot.sensors.items()
         named += [("link", s.link, (*path, "sensors", n, "link")) for n, s in sensors if s.link]
-        for part, wanted, at in named:
-            if wanted not in known[part]:
-                text = f"the description of robot '{name}' has no {part} '{wanted}'"
+        for part, expected, at in named:
+            if expected not in known[part]:
+                text = f"the description of robot '{name}' has no {part} '{expected}'"
                 names = sorted(known[part])
-                hint = did_you_mean(nearest(wanted, names)).removeprefix("; ")
+                hint = did_you_mean(nearest(expected, names)).removeprefix("; ")
                 yield Diagnostic(
                     "E130", text, facts.mark(*at), hint or f"known: {', '.join(names)}"
                 )

@@ -82,12 +82,12 @@ def _check_room(facts: Facts, spawn: Spawn, area: Area, name: str) -> Iterator[D
     if spawn.density is not None:
         where = f"spawn '{name}'"
         yield from facts.whole(spawn.density, floor, where, *path, "density")
-    wanted = round(spawn.people(floor))
+    count = round(spawn.people(floor))
     least = spawn.least_radius(facts.crowd.body.radius)
     most = min(most_points(area.size, least, max(spawn.spacing or 0.0, 2.0 * least)), MAX_PEOPLE)
-    if wanted > most:
+    if count > most:
         size = f"{area.size[0]:g} m × {area.size[1]:g} m"
-        text = f"{people(wanted)} of spawn '{name}' cannot fit into its {size}"
+        text = f"{people(count)} of spawn '{name}' cannot fit into its {size}"
         hint = f"there is room for at most {most}" if most else "there is no room for a person"
         mark = facts.mark(*path, "count" if spawn.count else "density")
         yield Diagnostic("E136", text, mark, hint)

@@ -70,7 +70,7 @@ def area_of(facts: Facts, place: Place) -> Area | None:
 
 def _check_number(facts: Facts, stream: Stream, name: str, path: Path) -> Iterator[Diagnostic]:
     """Check that this many people fit where they start."""
-    place, density, wanted = stream.starts_in, stream.people_per_area, stream.count
+    place, density, count = stream.starts_in, stream.people_per_area, stream.count
     if stream.entering is not None:
         yield from _check_arrivals(facts, stream.entering, name, (*path, "arrivals"))
     area = None if place is None else area_of(facts, place)
@@ -81,13 +81,13 @@ def _check_number(facts: Facts, stream: Stream, name: str, path: Path) -> Iterat
         yield from facts.whole(
             density, floor, f"stream '{name}'", "crowd", "streams", name, "density"
         )
-        wanted = round(density * floor)
+        count = round(density * floor)
     radius = stream.body.radius or facts.crowd.body.radius
     radius = min(radius, 0.1) if facts.crowd.people else radius
     most = min(most_points(area.size, radius, 2.0 * radius), MAX_PEOPLE)
-    if (wanted or 1) > most:
+    if (count or 1) > most:
         size = f"{area.size[0]:g} m × {area.size[1]:g} m"
-        text = f"{people(wanted or 1)} of stream '{name}' cannot fit into its {size}"
+        text = f"{people(count or 1)} of stream '{name}' cannot fit into its {size}"
         hint = f"there is room for at most {most}" if most else "there is no room for a person"
         field = "density" if density is not None else "count" if stream.count else "arrivals"
         yield Diagnostic("E136", text, facts.mark(*path, field), hint)

@@ -121,10 +121,10 @@ def flatten(content: Any, path: str = "") -> Values:
     """Return a document as dotted path -> value; empty maps count as values."""
     if not isinstance(content, dict) or (path and not content):
         return {path: content}
-    found: Values = {}
+    values: Values = {}
     for key, value in content.items():
-        found |= flatten(value, f"{path}.{key}" if path else key)
-    return found
+        values |= flatten(value, f"{path}.{key}" if path else key)
+    return values
 
 
 def changes(old: Values, new: Values) -> Iterator[str]:

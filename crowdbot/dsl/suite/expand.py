@@ -368,15 +368,15 @@ class _Expander:
         self, tree: Node, data: dict[str, Any]
     ) -> tuple[Scenario | None, list[Diagnostic]]:
         """Return the validated scenario with its files found, and the errors."""
-        scenario, found = self._with_known_parts(tree, data), list[Diagnostic]()
+        scenario, diagnostics = self._with_known_parts(tree, data), list[Diagnostic]()
         if scenario is None:
-            scenario, found = validate(self._model, data, tree)
+            scenario, diagnostics = validate(self._model, data, tree)
         if scenario is None or self._assets is None:
-            return scenario, found
-        filled = self._assets.fill(scenario, tree, data, found)
-        if filled is not data and not found:
-            scenario, found = validate(self._model, filled, tree)
-        return scenario, found
+            return scenario, diagnostics
+        filled = self._assets.fill(scenario, tree, data, diagnostics)
+        if filled is not data and not diagnostics:
+            scenario, diagnostics = validate(self._model, filled, tree)
+        return scenario, diagnostics
 
     def _with_known_parts(self, tree: Node, data: dict[str, Any]) -> Scenario | None:
         """Return the scenario built from validated parts; None if that fails."""

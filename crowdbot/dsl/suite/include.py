@@ -161,10 +161,10 @@ class Loader:
         of = found.child("scenario") or found.child("base")
         return replace(of, implied=True) if of is not None else Node(item.mark, {}, implied=True)
 
-    def _named_file(self, item: Node, file: _File, code: str, wanted: str) -> _File | None:
+    def _named_file(self, item: Node, file: _File, code: str, name: str) -> _File | None:
         """Return the file that a value names, if it may be read; otherwise record the error."""
         if not isinstance(item.value, str):
-            self._add(code, wanted, item.mark)
+            self._add(code, name, item.mark)
             return None
         found = self._find(item.value, item.mark, file)
         if found is None:
@@ -192,11 +192,11 @@ class Loader:
             plugin, colon, path = "", "", name
         return plugin + colon + os.path.normpath(os.path.join(os.path.dirname(path), text))  # noqa: PTH118, PTH120 - text, not files
 
-    def _unless_cycle(self, found: _File, mark: Mark) -> _File | None:
-        target = found.path.resolve()
-        if target not in found.chain:
-            return found
-        chain = " -> ".join(p.name for p in (*found.chain[found.chain.index(target) :], target))
+    def _unless_cycle(self, file: _File, mark: Mark) -> _File | None:
+        target = file.path.resolve()
+        if target not in file.chain:
+            return file
+        chain = " -> ".join(p.name for p in (*file.chain[file.chain.index(target) :], target))
         self._add("E202", f"files include each other: {chain}", mark)
         return None
 

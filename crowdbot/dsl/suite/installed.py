@@ -35,9 +35,9 @@ def check_metrics(listed: Node | None, installed: Installed, problems: list[Diag
             problems.append(Diagnostic("E121", f"unknown metric '{name}'", item.mark, hint))
 
 
-def check_versions(wanted: Node | None, installed: Installed, problems: list[Diagnostic]) -> None:
+def check_versions(versions: Node | None, installed: Installed, problems: list[Diagnostic]) -> None:
     """Check that components are not older than the document requires."""
-    for kind, key, node in _leaves(wanted) if wanted else ():
+    for kind, key, node in _leaves(versions) if versions else ():
         known = installed.versions
         if not kind or type(node.value) is not int or node.value < 1:
             text = "kinds wants a map of kinds with their version, a whole number from 1"

@@ -53,13 +53,13 @@ def _kept(
     names = [axis.name for axis in axes]
     for product in itertools.product(*(axis.labels for axis in axes)):
         labels = dict(zip(names, product, strict=True))
-        wanted = only is None or any(_fits(choice, labels) for choice in only)
-        if wanted and not any(_fits(choice, labels) for choice in exclude):
+        selected = only is None or any(_fits(choice, labels) for choice in only)
+        if selected and not any(_fits(choice, labels) for choice in exclude):
             yield product
 
 
 def _fits(choice: _Choice, labels: Mapping[str, str]) -> bool:
-    return all(labels.get(axis) in wanted for axis, wanted in choice.items())
+    return all(labels.get(axis) in label for axis, label in choice.items())
 
 
 def _choices(

@@ -347,8 +347,8 @@ def _crowd_axes(root: Node, axes: tuple[Axis, ...], problems: list[Diagnostic]) 
             hint = did_you_mean(nearest(item.value, known)).removeprefix("; ")
             text = f"the matrix has no axis '{item.value}'"
             problems.append(Diagnostic("E208", text, item.mark, hint))
-    wanted = {item.value for item in listed.value if isinstance(item.value, str)}
-    return tuple(name for name in known if name in wanted or name == DRAW)
+    names = {item.value for item in listed.value if isinstance(item.value, str)}
+    return tuple(name for name in known if name in names or name == DRAW)
 
 
 def _run_seeds(root: Node, problems: list[Diagnostic]) -> tuple[int, ...]:

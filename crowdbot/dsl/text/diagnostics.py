@@ -154,7 +154,7 @@ class Diagnostic:
             "line": self.mark.line + 1,
             "column": self.mark.column + 1,
             "width": self.mark.width,
-            "also": [{"what": what, "at": str(mark)} for what, mark in self.also],
+            "also": [{"what": text, "at": str(mark)} for text, mark in self.also],
             "included_from": [_place(mark) for mark in _includers(self.mark)],
         }
 
@@ -185,7 +185,7 @@ def render(diagnostics: Iterable[Diagnostic]) -> str:
 
 def _render_one(diagnostic: Diagnostic) -> str:
     lines = [diagnostic.headline(), *_snippet(diagnostic.mark, _shown(diagnostic.hint))]
-    lines += [f"  {what} {mark}" for what, mark in diagnostic.also]
+    lines += [f"  {note} {mark}" for note, mark in diagnostic.also]
     lines += [f"  included from {_place(mark)}" for mark in _includers(diagnostic.mark)]
     return "\n".join(lines)
 
@@ -228,11 +228,11 @@ def _clip(text: str) -> str:
 
 
 def _includers(mark: Mark) -> list[Mark]:
-    found: list[Mark] = []
+    marks: list[Mark] = []
     while mark.source.included_from is not None:
         mark = mark.source.included_from
-        found.append(mark)
-    return found
+        marks.append(mark)
+    return marks
 
 
 def _place(mark: Mark) -> str:

@@ -77,15 +77,15 @@ class CrossingCorridorSpec(WalkwaySpec):
     def usual_portals(self) -> dict[str, Rectangle]:
         """Return portals behind the ends of the arms; for the second corridor only if square."""
         a, b, half = 0.5 * self.width, 0.5 * self.cross_width, 0.5 * self.length
-        found = {
+        portals = {
             "west": box(-half - PORTAL_DEPTH, -half, -a, a),
             "east": box(half, half + PORTAL_DEPTH, -a, a),
         }
         if self.angle == _RIGHT:
             far = 0.5 * self.cross_length
-            found["south"] = box(-b, b, -far - PORTAL_DEPTH, -far)
-            found["north"] = box(-b, b, far, far + PORTAL_DEPTH)
-        return found
+            portals["south"] = box(-b, b, -far - PORTAL_DEPTH, -far)
+            portals["north"] = box(-b, b, far, far + PORTAL_DEPTH)
+        return portals
 
     def check_shape(self) -> None:
         """Refuse arms that are shorter than the crossing."""

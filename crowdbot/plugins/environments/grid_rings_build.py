@@ -41,19 +41,19 @@ def grid_rings(free: NDArray[np.bool_]) -> list[GridRing]:
     pinched = (exits == 5) | (exits == 10)
     leaving = exits.tobytes()
     unseen = bytearray(leaving)
-    found = []
+    rings = []
     for start in np.flatnonzero(exits & 1).tolist():
         if not unseen[start] & 1:
             continue
         turns = np.array(_followed(leaving, unseen, start, moves))
-        found.append(
+        rings.append(
             GridRing(
                 corners=np.column_stack([turns % width, turns // width]) - 1,
                 pinched=pinched.ravel()[turns],
                 region=int(regions[start // width, start % width]),
             )
         )
-    return found
+    return rings
 
 
 def _exits(inside: NDArray[np.bool_]) -> NDArray[np.uint8]:

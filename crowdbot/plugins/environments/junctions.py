@@ -71,10 +71,10 @@ class CornerSpec(WalkwaySpec):
     def usual_portals(self) -> dict[str, Rectangle]:
         """Return a portal behind the start, and one behind the end if the turn is square."""
         half = 0.5 * self.width
-        found = {"start": box(-self.length - PORTAL_DEPTH, -self.length, -half, half)}
+        portals = {"start": box(-self.length - PORTAL_DEPTH, -self.length, -half, half)}
         if self.angle == _RIGHT:
-            found["end"] = box(-half, half, self.beyond, self.beyond + PORTAL_DEPTH)
-        return found
+            portals["end"] = box(-half, half, self.beyond, self.beyond + PORTAL_DEPTH)
+        return portals
 
     def check_shape(self) -> None:
         """Refuse parts that are shorter than the turn."""

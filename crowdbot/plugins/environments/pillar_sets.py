@@ -67,17 +67,17 @@ class PillarFieldSpec(Spec):
 
     def draw(self, area: Rectangle, top: float) -> tuple[Pillar, ...]:
         """Draw the pillars, as `pillars` does, without using its cache."""
-        found = list[Pillar]()
+        pillars = list[Pillar]()
         for number in range(self.count):
             radius = self._radius(number)
             for attempt in range(_ATTEMPTS):
                 at = self._place(area, radius, number, attempt)
-                if at is not None and all(self._apart(at, radius, p) for p in found):
-                    found.append(Pillar(x=at[0], y=at[1], radius=radius, heights=(0.0, top)))
+                if at is not None and all(self._apart(at, radius, p) for p in pillars):
+                    pillars.append(Pillar(x=at[0], y=at[1], radius=radius, heights=(0.0, top)))
                     break
             else:
                 raise ValueError(f"pillar_field: only {number} of {self.count} pillars fit")
-        return tuple(found)
+        return tuple(pillars)
 
     def _radius(self, number: int) -> float:
         largest = self.radius if self.largest_radius is None else self.largest_radius
@@ -96,8 +96,8 @@ class PillarFieldSpec(Spec):
     def _apart(self, at: outlines.Point, radius: float, other: Pillar) -> bool:
         return math.dist(at, (other.x, other.y)) >= radius + other.radius + self.gap
 
-    def _uniform(self, what: str, number: int, attempt: int) -> float:
-        text = f"{self.seed}/pillars/{what}/{number}/{attempt}".encode()
+    def _uniform(self, label: str, number: int, attempt: int) -> float:
+        text = f"{self.seed}/pillars/{label}/{number}/{attempt}".encode()
         return int.from_bytes(hashlib.sha256(text).digest()[:6], "big") / 2.0**48
 
 
@@ -125,7 +125,7 @@ def all_pillars(
         floor: where they stand.
         top: height of the walls, m, which pillars reach by default.
     """
-    found = tuple(pillar.pillar(top) for pillar in named)
+    pillars = tuple(pillar.pillar(top) for pillar in named)
     for many in sets:
-        found += () if many is None else many.pillars(floor, top)
-    return found
+        pillars += () if many is None else many.pillars(floor, top)
+    return pillars

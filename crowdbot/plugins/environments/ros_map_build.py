@@ -89,12 +89,12 @@ class RosMap:
         return grey if self.negate else 1.0 - grey
 
 
-def _tell_units(name: str, found: RosMap) -> None:
+def _tell_units(name: str, ros_map: RosMap) -> None:
     """Warn of a yaw that is hardly in radians, and of cells that are hardly in metres."""
-    if abs(found.origin[2]) > 2.0 * np.pi:
-        _LOG.warning("%s: yaw is %g rad: degrees?", name, found.origin[2])
-    if found.resolution > _COARSE:
-        _LOG.warning("%s: resolution is %g m: centimetres?", name, found.resolution)
+    if abs(ros_map.origin[2]) > 2.0 * np.pi:
+        _LOG.warning("%s: yaw is %g rad: degrees?", name, ros_map.origin[2])
+    if ros_map.resolution > _COARSE:
+        _LOG.warning("%s: resolution is %g m: centimetres?", name, ros_map.resolution)
 
 
 def read_map(file: Path) -> RosMap:
@@ -111,7 +111,7 @@ def read_map(file: Path) -> RosMap:
         raise InputError(f"{file.name}: is not a map.yaml: it names no image")
     try:
         origin = tuple(_number("origin", v) for v in content["origin"])
-        found = RosMap(
+        ros_map = RosMap(
             image=str(content["image"]),
             resolution=_number("resolution", content["resolution"]),
             origin=(origin[0], origin[1], origin[2] if len(origin) > 2 else 0.0),
@@ -128,16 +128,16 @@ def read_map(file: Path) -> RosMap:
         raise InputError(
             f"{file.name}: origin has {len(origin)} numbers; it is x, y (m) and yaw (rad)"
         )
-    numbers = (found.resolution, *found.origin, found.occupied, found.free)
-    if not (np.all(np.isfinite(numbers)) and found.resolution > 0.0):
+    numbers = (ros_map.resolution, *ros_map.origin, ros_map.occupied, ros_map.free)
+    if not (np.all(np.isfinite(numbers)) and ros_map.resolution > 0.0):
         raise InputError(f"{file.name}: resolution must be above 0, and all numbers finite")
-    if not 0.0 <= found.free <= found.occupied <= 1.0:
+    if not 0.0 <= ros_map.free <= ros_map.occupied <= 1.0:
         raise InputError(f"{file.name}: thresholds must be 0 <= free <= occupied <= 1")
-    _tell_units(file.name, found)
-    if found.mode not in _MODES:
-        known, near = ", ".join(_MODES), did_you_mean(nearest(found.mode, _MODES))
-        raise InputError(f"{file.name}: mode '{found.mode}' is not one of {known}{near}")
-    return found
+    _tell_units(file.name, ros_map)
+    if ros_map.mode not in _MODES:
+        known, near = ", ".join(_MODES), did_you_mean(nearest(ros_map.mode, _MODES))
+        raise InputError(f"{file.name}: mode '{ros_map.mode}' is not one of {known}{near}")
+    return ros_map
 
 
 def _number(name: str, value: Any) -> float:
@@ -253,22 +253,22 @@ def _grey(image: Any, alpha: Alpha) -> NDArray[np.float64]:
     return np.asarray(grey)
 
 
-def _taken_for_free(found: RosMap) -> bool:
-    return bool(found.occupancy(np.array([_UNKNOWN]))[0] < found.free)
+def _taken_for_free(ros_map: RosMap) -> bool:
+    return bool(ros_map.occupancy(np.array([_UNKNOWN]))[0] < ros_map.free)
 
 
 def free_cells(
-    found: RosMap, grey: NDArray[np.float64], *, unknown_is_free: bool
+    ros_map: RosMap, grey: NDArray[np.float64], *, unknown_is_free: bool
 ) -> NDArray[np.bool_]:
     """Return a mask of walkable cells (H, W)."""
-    probability = found.occupancy(grey)
-    if found.mode == "trinary" and np.any(grey == _UNKNOWN) and _taken_for_free(found):
+    probability = ros_map.occupancy(grey)
+    if ros_map.mode == "trinary" and np.any(grey == _UNKNOWN) and _taken_for_free(ros_map):
         _LOG.warning(
             "%s: %d cells are grey 205, which map savers write where nothing is known; with "
             "free_thresh %g they are free, as nav2 takes them; with 0.196 they are not",
-            found.image, np.count_nonzero(grey == _UNKNOWN), found.free,
+            ros_map.image, np.count_nonzero(grey == _UNKNOWN), ros_map.free,
         )  # fmt: skip
     if unknown_is_free:
-        return ~(probability > found.occupied)
-    known_free = (probability == 0.0) if found.mode == "raw" else np.zeros(grey.shape, np.bool_)
-    return np.asarray((probability < found.free) | known_free)
+        return ~(probability > ros_map.occupied)
+    known_free = (probability == 0.0) if ros_map.mode == "raw" else np.zeros(grey.shape, np.bool_)
+    return np.asarray((probability < ros_map.free) | known_free)

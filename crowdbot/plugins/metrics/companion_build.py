@@ -124,25 +124,25 @@ class PersonComfort(DeclaredMetric[PersonComfortSpec]):
         extras = {"mean": mean, "peak": peak, "time_near": float(weights.sum())}
         return [self.factory.ok("corrected", 1.0 - 0.5 * (mean + peak), extras)]
 
-    def _discomfort(self, found: PersonStance) -> Array:
+    def _discomfort(self, stance: PersonStance) -> Array:
         """Return what is missing to the intimate zone's edge, or to the time, as a share (N,)."""
-        gap = np.maximum(np.nan_to_num(found.gap, nan=np.inf), 0.0)
+        gap = np.maximum(np.nan_to_num(stance.gap, nan=np.inf), 0.0)
         edge = max(self.spec.intimate, EDGE)
-        allowed = np.maximum(np.nan_to_num(found.advance), 0.0) * self.spec.rush_time
+        allowed = np.maximum(np.nan_to_num(stance.advance), 0.0) * self.spec.rush_time
         room = np.clip(1.0 - gap / edge, 0.0, 1.0)
         time = np.clip(1.0 - gap / np.maximum(allowed, EDGE), 0.0, 1.0)
         worst: Array = np.maximum(room, time)
         return worst
 
 
-def _mean(factory: ScoreFactory, found: PersonStance, values: Array, missing: str) -> Score:
+def _mean(factory: ScoreFactory, stance: PersonStance, values: Array, missing: str) -> Score:
     """Score a mean over time: of ``approach`` over its last ``hold`` seconds, else over all."""
     counted: Mask = np.isfinite(values)
-    if found.task.kind == "approach":
-        counted &= found.t >= found.t[-1] - found.task.hold - EDGE
+    if stance.task.kind == "approach":
+        counted &= stance.t >= stance.t[-1] - stance.task.hold - EDGE
     if not counted.any():
         return factory.undefined("corrected", missing)
-    weights = np.where(counted, time_weights(found.t), 0.0)
+    weights = np.where(counted, time_weights(stance.t), 0.0)
     if weights.sum() <= 0.0:
         return factory.undefined("corrected", "too_few_samples")
     return factory.ok("corrected", float(weights @ np.where(counted, values, 0.0) / weights.sum()))

@@ -31,10 +31,10 @@ class Part(NamedTuple):
     pitch: float = 0.0
 
 
-def scaled(found: Sequence[Part], mass: float) -> list[Part]:
+def scaled(parts: Sequence[Part], mass: float) -> list[Part]:
     """Return parts with masses scaled to a total of ``mass`` (kg)."""
-    scale = mass / sum(p.mass for p in found)
-    return [p._replace(mass=scale * p.mass) for p in found]
+    scale = mass / sum(p.mass for p in parts)
+    return [p._replace(mass=scale * p.mass) for p in parts]
 
 
 def balance(body: list[Part]) -> tuple[Vector, Vector]:

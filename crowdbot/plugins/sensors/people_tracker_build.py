@@ -83,8 +83,8 @@ class PeopleTrackerSensor:
         bearing = np.arctan2(away[near, 1], away[near, 0]) - yaw
         ahead = np.abs(np.arctan2(np.sin(bearing), np.cos(bearing))) <= 0.5 * spec.view + 1e-12
         near = near[ahead]
-        found: Indices = near[np.argsort(distance[near], kind="stable")]
-        return found
+        candidates: Indices = near[np.argsort(distance[near], kind="stable")]
+        return candidates
 
     def _in_sight(self, scene: Scene, pose: Pose, people: Indices) -> NDArray[np.bool_]:
         """Return a mask (K,) of people that a line of sight reaches."""

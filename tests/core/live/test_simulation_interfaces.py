@@ -99,7 +99,7 @@ def test_worlds_are_the_scenarios() -> None:
     assert _code(_call(session, "/load_world", {})) == 102
     assert session.take_request() == ""
     assert _code(_call(session, "/load_world", {"world_resource": {"uri": "two"}})) == 1
-    assert (session.take_request(), session.wanted) == ("load", "two")
+    assert (session.take_request(), session.requested) == ("load", "two")
 
 
 def test_states_are_listed_for_who_fits_the_filter() -> None:

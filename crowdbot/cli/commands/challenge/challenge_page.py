@@ -49,14 +49,14 @@ def challenge_page(
 
     registry = installed(plugin, no_plugins)
     expansion, lock = open_suite(suite, registry)
-    found = FolderOfBundles(tables=(), left_out={})
+    folder = FolderOfBundles(tables=(), left_out={})
     lines = [] if bundles is None else read_log(bundles / LOG, trusted_keys(key or ()))
     if bundles is not None and (not lines or any(bundles.glob("*.cbz"))):
-        found = read_bundles(
+        folder = read_bundles(
             bundles, registry, RULE, accept=accept or (), keys=key or (), suites=[expansion]
         )
     site = Site(
-        suite=suite, expansion=expansion, lock=lock, tables=found.tables, left_out=found.left_out,
+        suite=suite, expansion=expansion, lock=lock, tables=folder.tables, left_out=folder.left_out,
         received=sum(line.event == RECEIVED for line in lines),
         log_hash=lines[-1].sha256 if lines else "",
     )  # fmt: skip

@@ -145,8 +145,8 @@ def _of_runs(path: Path, beside: RealismReference) -> Realism:
     return measure_met(str(path), [tracks], beside)
 
 
-def _json(found: Sequence[Realism]) -> str:
-    return json.dumps([one.as_json() for one in found], indent=2, ensure_ascii=False)
+def _json(measured: Sequence[Realism]) -> str:
+    return json.dumps([one.as_json() for one in measured], indent=2, ensure_ascii=False)
 
 
 def _text(one: Realism) -> str:

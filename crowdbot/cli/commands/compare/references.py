@@ -62,14 +62,14 @@ def show(
 
 def _makers(runs: Sequence[RunRow]) -> list[dict[str, Any]]:
     """Return machines with their versions, and how many of the runs each has made."""
-    found: list[dict[str, Any]] = []
+    makers: list[dict[str, Any]] = []
     for run in runs:
         own = {"machine": run.record.machine, "versions": run.record.versions}
-        known = next((m for m in found if own.items() <= m.items()), None)
+        known = next((m for m in makers if own.items() <= m.items()), None)
         if known is None:
-            found.append(known := {"runs": 0, **own})
+            makers.append(known := {"runs": 0, **own})
         known["runs"] += 1
-    return found
+    return makers
 
 
 @references.command()
@@ -144,11 +144,11 @@ def _made(plan: Plan) -> Results:
     """Return the results of a plan's runs."""
     from crowdbot.core.results.results import Results
 
-    wanted = {str(r.directory.relative_to(plan.out)) for r in plan.runs}
-    found = Results.open(plan.out)
-    chosen = tuple(r for r in found.runs if r.directory in wanted)
+    directories = {str(r.directory.relative_to(plan.out)) for r in plan.runs}
+    results = Results.open(plan.out)
+    chosen = tuple(r for r in results.runs if r.directory in directories)
     ids = {r.run_id for r in chosen}
-    return Results(runs=chosen, scores=tuple(s for s in found.scores if s.run_id in ids))
+    return Results(runs=chosen, scores=tuple(s for s in results.scores if s.run_id in ids))
 
 
 def _command(request: CampaignRequest, seeds: str) -> str:

@@ -89,8 +89,8 @@ def report(
 
     check_ending(out, ".html")
     registry = installed(plugin, no_plugins)
-    wanted = None if suite is None else suite_id(suite, registry)
-    own = _of_suite(open_results(root, altered), wanted, root)
+    suite_name = None if suite is None else suite_id(suite, registry)
+    own = _of_suite(open_results(root, altered), suite_name, root)
     given = None if reference is None else reference_results(reference)
     results, known = with_reference(own, given)
     results = of_planners(results, planner or ())
@@ -137,17 +137,17 @@ def _of_suite(results: Results, suite: str | None, root: Path) -> Results:
         raise InputError(
             f"{root}: runs of several suites, choose with --suite: {', '.join(suites)}"
         )
-    wanted = suite if suite is not None else suites[0]
-    if wanted not in suites:
-        raise UnknownNameError("suite", wanted, suites)
+    chosen = suite if suite is not None else suites[0]
+    if chosen not in suites:
+        raise UnknownNameError("suite", chosen, suites)
     from crowdbot.core.results.score_columns import of_runs
 
-    runs = tuple(r for r in results.runs if r.suite == wanted)
+    runs = tuple(r for r in results.runs if r.suite == chosen)
     return replace(
         results,
         runs=runs,
         scores=of_runs(results.scores, {r.run_id for r in runs}),
-        failures=tuple(f for f in results.failures if f.suite == wanted),
+        failures=tuple(f for f in results.failures if f.suite == chosen),
     )
 
 

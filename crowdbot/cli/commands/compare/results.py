@@ -144,9 +144,9 @@ def _summaries(
 
     known = metrics_of(found.scores)
     first = [*named_metrics(found.runs), *_HEADLINES]
-    wanted = metrics or [m for m in dict.fromkeys(first) if m in known]
+    names = metrics or [m for m in dict.fromkeys(first) if m in known]
     grouped = Grouped(found, groups)
-    lines = [line_of(s) for m in wanted for s in grouped.summaries(m, variant)]
+    lines = [line_of(s) for m in names for s in grouped.summaries(m, variant)]
     once = {tuple(sorted(line.items(), key=lambda cell: cell[0])): line for line in lines}
     return [*once.values()]  # patterns may overlap
 

@@ -128,10 +128,10 @@ def _opened(crowd: str, registry: Registry, overrides: Sequence[str], robot: boo
     return (open_responding if robot else open_crowd)(crowd, registry, overrides)
 
 
-def _part(crowd: str, registry: Registry, overrides: Sequence[str], found: Fit, robot: bool) -> str:
+def _part(crowd: str, registry: Registry, overrides: Sequence[str], fit: Fit, robot: bool) -> str:
     from crowdbot.dsl.text.plain_yaml import to_yaml
 
-    changes = [f"{key}={float(f'{value:.4g}')!r}" for key, value in found.values.items()]
+    changes = [f"{key}={float(f'{value:.4g}')!r}" for key, value in fit.values.items()]
     fitted = _opened(crowd, registry, [*overrides, *changes], robot)
     places = (*_PLACES, "robot_response") if robot else _PLACES
     content = fitted.model_dump(mode="json", include=set(places), exclude_defaults=True)
@@ -142,31 +142,30 @@ def _part(crowd: str, registry: Registry, overrides: Sequence[str], found: Fit, 
         content.setdefault("robot_response", {})["kind"] = fitted.robot_response.kind
     head = (
         f"# Fitted by `crowdbot calibrate {Path(crowd).stem}{' --robot' * robot}`: "
-        f"{found.held_out:.3f} beside recordings that were\n"
-        f"# held out, {found.training:.3f} beside those it was fitted to; "
-        f"recorded people reach {found.ceiling:.3f}.\n"
+        f"{fit.held_out:.3f} beside recordings that were\n"
+        f"# held out, {fit.training:.3f} beside those it was fitted to; "
+        f"recorded people reach {fit.ceiling:.3f}.\n"
     )
     return head + to_yaml({"crowd": {n: content[n] for n in places if content.get(n)}})
 
 
-def _facts(found: Fit, out: Path) -> dict[str, Any]:
+def _facts(fit: Fit, out: Path) -> dict[str, Any]:
     return {
         "out": str(out),
-        "held_out": round(found.held_out, 4),
-        "training": round(found.training, 4),
-        "ceiling": round(found.ceiling, 4),
-        "evaluations": found.evaluations,
+        "held_out": round(fit.held_out, 4),
+        "training": round(fit.training, 4),
+        "ceiling": round(fit.ceiling, 4),
+        "evaluations": fit.evaluations,
         "parameters": {
-            key: {"value": value, "spread": found.spread[key]}
-            for key, value in found.values.items()
+            key: {"value": value, "spread": fit.spread[key]} for key, value in fit.values.items()
         },
     }
 
 
-def _text(found: Fit, out: Path) -> str:
+def _text(fit: Fit, out: Path) -> str:
     rows = [["number", "value", "spread"]]
-    rows += [[k, f"{v:.4g}", f"{found.spread[k]:.2g}"] for k, v in found.values.items()]
+    rows += [[k, f"{v:.4g}", f"{fit.spread[k]:.2g}"] for k, v in fit.values.items()]
     return (
-        f"{table(rows)}\n\nheld out {found.held_out:.3f}, training {found.training:.3f}, "
-        f"recorded people {found.ceiling:.3f}; {found.evaluations} crowds simulated\nwrote {out}"
+        f"{table(rows)}\n\nheld out {fit.held_out:.3f}, training {fit.training:.3f}, "
+        f"recorded people {fit.ceiling:.3f}; {fit.evaluations} crowds simulated\nwrote {out}"
     )

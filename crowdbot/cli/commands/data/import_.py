@@ -49,19 +49,19 @@ def import_(
     say(json.dumps(_facts(found, written), indent=2) if as_json else _text(found, written))
 
 
-def _facts(found: Imported, written: Sequence[Path]) -> dict[str, Any]:
+def _facts(imported: Imported, written: Sequence[Path]) -> dict[str, Any]:
     return {
         "out": str(written[0]),
         "files": [str(path) for path in written],
-        "formats": found.formats,
-        "scenarios": found.ids,
-        "counts": found.report.counts(),
-        "report": [entry.as_dict() for entry in found.report.entries],
+        "formats": imported.formats,
+        "scenarios": imported.ids,
+        "counts": imported.report.counts(),
+        "report": [entry.as_dict() for entry in imported.report.entries],
     }
 
 
-def _text(found: Imported, written: Sequence[Path]) -> str:
-    count = len(found.ids)
-    scenarios = f"{count} scenario{'s' * (count != 1)}: {', '.join(found.ids[:5])}"
+def _text(imported: Imported, written: Sequence[Path]) -> str:
+    count = len(imported.ids)
+    scenarios = f"{count} scenario{'s' * (count != 1)}: {', '.join(imported.ids[:5])}"
     more = ", …" if count > 5 else ""
-    return "\n".join([*found.report.lines(), f"wrote {written[0]}, {scenarios}{more}"])
+    return "\n".join([*imported.report.lines(), f"wrote {written[0]}, {scenarios}{more}"])

@@ -48,20 +48,20 @@ def info(
     _show(about, found)
 
 
-def _about(path: Path, found: RecordingContents) -> dict[str, Any]:
+def _about(path: Path, contents: RecordingContents) -> dict[str, Any]:
     from crowdbot.core.recording.recording import Recording
 
     about: dict[str, Any] = {
         "file": str(path),
-        "bytes": found.size,
-        "duration": found.end,
-        "finished": found.finished,
-        "complete": found.complete,
-        "status": found.status,
-        "messages": sum(t.count for t in found.topics),
-        "attachments": dict(found.attachments),
+        "bytes": contents.size,
+        "duration": contents.end,
+        "finished": contents.finished,
+        "complete": contents.complete,
+        "status": contents.status,
+        "messages": sum(t.count for t in contents.topics),
+        "attachments": dict(contents.attachments),
     }
-    if any(t.name == "/crowdbot/header" for t in found.topics):
+    if any(t.name == "/crowdbot/header" for t in contents.topics):
         with Recording(path) as recording:
             scenario = recording.header.scenario
             about |= {"scenario": scenario, "trajectory": _hash(recording)}
@@ -78,7 +78,7 @@ def _hash(recording: Recording) -> str | None:
         return None
 
 
-def _show(about: dict[str, Any], found: RecordingContents) -> None:
+def _show(about: dict[str, Any], contents: RecordingContents) -> None:
     from rich.console import Console
     from rich.markup import escape
     from rich.table import Table
@@ -87,13 +87,14 @@ def _show(about: dict[str, Any], found: RecordingContents) -> None:
         return escape(printable(text))
 
     console = Console(soft_wrap=True, highlight=False)
-    ending = "complete" if found.complete else "NOT complete"
-    if not found.finished:
+    ending = "complete" if contents.complete else "NOT complete"
+    if not contents.finished:
         ending += ": the file was cut off; crowdbot recover makes a whole one of it"
-    elif found.status and not found.complete:
-        ending += f": {printable(found.status)}"
+    elif contents.status and not contents.complete:
+        ending += f": {printable(contents.status)}"
     console.print(
-        f"{printable(about['file'])}: {found.size} bytes, {found.end:.2f} s, {ending}", markup=False
+        f"{printable(about['file'])}: {contents.size} bytes, {contents.end:.2f} s, {ending}",
+        markup=False,
     )
     for name in ("scenario", "trajectory"):
         if about.get(name):
@@ -101,11 +102,11 @@ def _show(about: dict[str, Any], found: RecordingContents) -> None:
     table = Table(box=None, pad_edge=False)
     for name in ("topic", "type", "messages", "Hz", "bytes"):
         table.add_column(name, overflow="fold", no_wrap=name not in ("topic", "type"))
-    for topic in found.topics:
+    for topic in contents.topics:
         rate = "" if topic.rate is None else f"{topic.rate:.1f}"
         table.add_row(
             *map(escaped, (topic.name, topic.msgtype)), str(topic.count), rate, str(topic.size)
         )
     console.print(table)
-    for name, size in found.attachments.items():
+    for name, size in contents.attachments.items():
         console.print(printable(f"attached: {name}, {size} bytes"), markup=False)

@@ -89,13 +89,13 @@ def _watched(directories: Sequence[Path]) -> Iterable[Path]:
     return track(directories, title, console=console, transient=True)
 
 
-def _count(found: CauseCount) -> dict[str, object]:
+def _count(cause: CauseCount) -> dict[str, object]:
     return {
-        "planner": found.planner,
-        "cause": str(found.cause),
-        "count": found.count,
-        "runs": found.runs,
-        "example": found.example.as_json(),
+        "planner": cause.planner,
+        "cause": str(cause.cause),
+        "count": cause.count,
+        "runs": cause.runs,
+        "example": cause.example.as_json(),
     }
 
 

@@ -125,7 +125,7 @@ def _excerpt(line: str, text: str) -> str:
 
 
 def _lines(folder: Path, text: str, developers: bool) -> list[dict[str, object]]:
-    wanted = text.casefold()
+    needle = text.casefold()
     return [
         {"page": name, "line": number, "text": line.strip()}
         for name in pages(folder)
@@ -133,5 +133,5 @@ def _lines(folder: Path, text: str, developers: bool) -> list[dict[str, object]]
         for number, line in enumerate(
             (folder / f"{name}.md").read_text(encoding="utf-8").splitlines(), 1
         )
-        if wanted in line.casefold()
+        if needle in line.casefold()
     ]

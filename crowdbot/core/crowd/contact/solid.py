@@ -79,15 +79,15 @@ def _off_wall(
         return False
     mx, my = nearest_on_segment(x0, y0, ax, ay, bx, by)
     before = math.sqrt((x0 - mx) ** 2 + (y0 - my) ** 2)
-    wanted = min(room, before)
-    if not behind and distance >= wanted - _SLACK:
+    target = min(room, before)
+    if not behind and distance >= target - _SLACK:
         return False
     if behind or distance == 0.0:
         dx, dy = (x0 - mx, y0 - my) if distance == 0.0 else (-dx, -dy)
         distance = before if distance == 0.0 else distance
         if distance == 0.0:
             return False
-    _place_at(agents, i, nx, ny, dx / distance, dy / distance, wanted)
+    _place_at(agents, i, nx, ny, dx / distance, dy / distance, target)
     return True
 
 
@@ -101,12 +101,12 @@ def _off_pillar(
     if distance >= room - _SLACK:
         return False
     before = math.sqrt((x0 - px) ** 2 + (y0 - py) ** 2)
-    wanted = min(room, before)
-    if distance >= wanted - _SLACK or before == 0.0:
+    target = min(room, before)
+    if distance >= target - _SLACK or before == 0.0:
         return False
     if distance == 0.0:
         dx, dy, distance = x0 - px, y0 - py, before
-    _place_at(agents, i, px, py, dx / distance, dy / distance, wanted)
+    _place_at(agents, i, px, py, dx / distance, dy / distance, target)
     return True
 
 

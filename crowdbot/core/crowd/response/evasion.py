@@ -163,11 +163,11 @@ def _sidestep(
         return 0.0, 0.0
     ux, uy = wx / speed, wy / speed
     gap, extra = clearance(room, robot, response)
-    wanted = robot.body + radius + gap
+    clear = robot.body + radius + gap
     give_way, behind = _give_way(robot, ux, uy, extra, response)
     waits = math.copysign(_waits(agents, i, robot, response), give_way)
     shift, along, first, last, left = _way_round(
-        agents, i, robot, outline, ux, uy, wanted, give_way, behind, waits
+        agents, i, robot, outline, ux, uy, clear, give_way, behind, waits
     )
     if shift <= 0.0 or last <= 0.0 or first >= response.horizon * speed:
         return 0.0, 0.0
@@ -260,7 +260,7 @@ def _way_round(
     outline: Array,
     ux: float,
     uy: float,
-    wanted: float,
+    clear: float,
     give_way: float,
     behind: float,
     waits: float,
@@ -269,7 +269,7 @@ def _way_round(
 
     Args:
         ux, uy: direction of the ray.
-        wanted: required distance of the outline's corners from the ray, m.
+        clear: required distance of the outline's corners from the ray, m.
         give_way: extra way, m, that the agent accepts to pass on the left; negative: on the right.
         behind: extra distance if it passes on the side where it gives way, m.
         waits: share of the outline's extent that is added to ``give_way``, with its sign.
@@ -293,11 +293,11 @@ def _way_round(
             left, abreast_left = across, along
         if -across > right:
             right, abreast_right = -across, along
-        first = min(first, along - math.sqrt(max(0.0, wanted * wanted - across * across)))
+        first = min(first, along - math.sqrt(max(0.0, clear * clear - across * across)))
         last = max(last, along)
     if left < right + give_way + waits * (left + right):
-        return left + wanted + (behind if give_way > 0.0 else 0.0), abreast_left, first, last, True
-    return right + wanted + (behind if give_way < 0.0 else 0.0), abreast_right, first, last, False
+        return left + clear + (behind if give_way > 0.0 else 0.0), abreast_left, first, last, True
+    return right + clear + (behind if give_way < 0.0 else 0.0), abreast_right, first, last, False
 
 
 @kernel

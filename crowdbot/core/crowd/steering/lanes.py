@@ -17,22 +17,22 @@ _STANDS = 0.2
 @kernel
 def keep_all(
     discs: Rows[DiscRecord], row: Indices, heading: Array, decides: Mask,
-    strength: float, reach: float, half_width: float, follow: float, wanted: Array,
+    strength: float, reach: float, half_width: float, follow: float, desired: Array,
 ) -> None:  # fmt: skip
     """Add the accelerations of all people who decide and step aside, in place.
 
     Args:
         discs to decides: as of `sorted_discs.sort_people`.
         strength to follow: see `LanesSpec`.
-        wanted: (N, 2) accelerations, m/s^2.
+        desired: (N, 2) accelerations, m/s^2.
     """
-    for i in range(wanted.shape[0]):
+    for i in range(desired.shape[0]):
         if not decides[i]:
             continue
         hx, hy = heading[i, 0], heading[i, 1]
         aside = aside_of(discs, int(row[i]), hx, hy, reach, half_width, follow)
-        wanted[i, 0] -= strength * aside * hy
-        wanted[i, 1] += strength * aside * hx
+        desired[i, 0] -= strength * aside * hy
+        desired[i, 1] += strength * aside * hx
 
 
 @kernel

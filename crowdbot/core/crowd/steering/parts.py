@@ -39,12 +39,12 @@ _NO_BOX = np.zeros(4)
 
 def part_numbers(spec: SteeringSpec) -> Array:
     """Return (5, 5) a row for each of `PARTS`: 1 if it is on, then its fields."""
-    found = np.zeros((len(PARTS), 5))
-    for row, (name, fields) in zip(found, PARTS.items(), strict=True):
+    numbers = np.zeros((len(PARTS), 5))
+    for row, (name, fields) in zip(numbers, PARTS.items(), strict=True):
         part = getattr(spec, name)
         if part is not None:
             row[: 1 + len(fields)] = 1.0, *(getattr(part, field) for field in fields)
-    return found
+    return numbers
 
 
 class SteeringParts:
@@ -55,15 +55,15 @@ class SteeringParts:
         self._agents: Agents | None = None
         self._make_room(0, 0)
 
-    def steer(self, view: CrowdView, relaxation: float, wanted: Array) -> Array:
+    def steer(self, view: CrowdView, relaxation: float, desired: Array) -> Array:
         """Return accelerations (N, 2) after all parts, within each agent's limit, m/s^2.
 
         Args:
             relaxation: time in which the policy reaches the velocity that it has chosen, s; 0 is
                 the time between decisions.
-            wanted: (N, 2) what the policy wants, m/s^2; left as it is.
+            desired: (N, 2) what the policy wants, m/s^2; left as it is.
         """
-        agents, boundary, changed = view.agents, view.periodic_boundary, np.array(wanted)
+        agents, boundary, changed = view.agents, view.periodic_boundary, np.array(desired)
         if agents is not self._agents:
             self._meet(agents)
         people = len(changed)
@@ -109,7 +109,7 @@ def steer_people(
     robots: Array, pillars: Array, box: Array, diagonal: bool,
     walls: Array, frame: Array, first: Indices, cells: Indices, t: float, relaxation: float,
     unsorted: Rows[DiscRecord], discs: Rows[DiscRecord], orders: Indices, heading: Array,
-    decides: Mask, wanted: Array,
+    decides: Mask, desired: Array,
 ) -> None:  # fmt: skip
     """Change accelerations (N, 2) by all parts, then limit them, in place, m/s^2.
 
@@ -125,42 +125,42 @@ def steer_people(
         unsorted, discs, orders, heading, decides,
     )  # fmt: skip
     steer_among_discs(
-        parts, discs[:count], orders[2], heading, decides, velocity, relaxation, wanted
+        parts, discs[:count], orders[2], heading, decides, velocity, relaxation, desired
     )
     if parts[WALLS, 0] != 0.0:
         push_off_walls(
             decides, position, traits[0], walls, frame, first, cells, parts[WALLS, 1],
-            parts[WALLS, 2], wanted,
+            parts[WALLS, 2], desired,
         )  # fmt: skip
     if parts[WANDER, 0] != 0.0:
         knots = t * E_FOLD / parts[WANDER, 2]
-        wander_all(decides, ids, knots, parts[WANDER, 1], key, wanted)
-    for i in range(wanted.shape[0]):
-        limit, size = traits[2, i], math.hypot(wanted[i, 0], wanted[i, 1])
+        wander_all(decides, ids, knots, parts[WANDER, 1], key, desired)
+    for i in range(desired.shape[0]):
+        limit, size = traits[2, i], math.hypot(desired[i, 0], desired[i, 1])
         share = min(1.0, limit / max(size, limit))
-        wanted[i, 0] *= share
-        wanted[i, 1] *= share
+        desired[i, 0] *= share
+        desired[i, 1] *= share
 
 
 @kernel
 def steer_among_discs(
     parts: Array, near: Rows[DiscRecord], row: Indices, heading: Array, decides: Mask,
-    velocity: Array, relaxation: float, wanted: Array,
+    velocity: Array, relaxation: float, desired: Array,
 ) -> None:  # fmt: skip
     """Change accelerations (N, 2) by time gap, personal space and lanes, in place, m/s^2.
 
     Args:
         parts: from `part_numbers`.
         near, row, heading, decides: sorted discs and what `sort_people` writes.
-        velocity, relaxation, wanted: as of `steer_people`.
+        velocity, relaxation, desired: as of `steer_people`.
     """
     gap, space, lanes = parts[GAP], parts[SPACE], parts[LANES]
     if gap[0] != 0.0:
         limit_all(
             near, row, heading, decides, velocity, gap[1], gap[2], gap[3], gap[4], relaxation,
-            wanted,
+            desired,
         )  # fmt: skip
     if space[0] != 0.0:
-        push_all(near, heading, decides, space[1], space[2], space[3], space[4], wanted)
+        push_all(near, heading, decides, space[1], space[2], space[3], space[4], desired)
     if lanes[0] != 0.0:
-        keep_all(near, row, heading, decides, lanes[1], lanes[2], lanes[3], lanes[4], wanted)
+        keep_all(near, row, heading, decides, lanes[1], lanes[2], lanes[3], lanes[4], desired)

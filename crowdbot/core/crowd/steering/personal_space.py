@@ -19,7 +19,7 @@ _THROUGH = 0.05
 @kernel
 def push_all(
     discs: Rows[DiscRecord], heading: Array, decides: Mask,
-    strength: float, reach: float, anticipation: float, behind: float, wanted: Array,
+    strength: float, reach: float, anticipation: float, behind: float, desired: Array,
 ) -> None:  # fmt: skip
     """Add the pushes of all others on people who decide to accelerations (N, 2), in place.
 
@@ -29,7 +29,7 @@ def push_all(
     Args:
         discs, heading, decides: as of `sorted_discs.sort_people`.
         strength to behind: see `PersonalSpaceSpec`.
-        wanted: m/s^2.
+        desired: m/s^2.
     """
     farthest = 4.6 * reach  # where the push is 1 % of the strength
     for a in range(discs.shape[0]):
@@ -52,14 +52,14 @@ def push_all(
             push = strength * math.exp(-gap / reach)
             if i >= 0 and reaches_a and gap <= farthest:
                 size = _felt(push, nx, ny, heading[i], behind)
-                wanted[i, 0] += -size * nx
-                wanted[i, 1] += -size * ny
+                desired[i, 0] += -size * nx
+                desired[i, 1] += -size * ny
             if j >= 0 and reaches_b and other_gap <= farthest:
                 if other_gap != gap:
                     push = strength * math.exp(-other_gap / reach)
                 size = _felt(push, -nx, -ny, heading[j], behind)
-                wanted[j, 0] += size * nx
-                wanted[j, 1] += size * ny
+                desired[j, 0] += size * nx
+                desired[j, 1] += size * ny
 
 
 @inline_kernel

@@ -22,7 +22,7 @@ _ONCOMING = 0.2
 def limit_all(
     discs: Rows[DiscRecord], row: Indices, heading: Array, decides: Mask, velocity: Array,
     time: float, oncoming_time: float, room: float, half_width: float, relaxation: float,
-    wanted: Array,
+    desired: Array,
 ) -> None:  # fmt: skip
     """Reduce accelerations so that speeds after the relaxation time leave the time gap, in place.
 
@@ -30,13 +30,13 @@ def limit_all(
         discs to decides: as of `sorted_discs.sort_people`; velocity: (N, 2), m/s.
         time to half_width: see `TimeGapSpec`.
         relaxation: time in which people reach the velocity that they have chosen, s.
-        wanted: (N, 2) accelerations, m/s^2.
+        desired: (N, 2) accelerations, m/s^2.
     """
-    for i in range(wanted.shape[0]):
+    for i in range(desired.shape[0]):
         if not decides[i]:
             continue
-        ux = velocity[i, 0] + relaxation * wanted[i, 0]
-        uy = velocity[i, 1] + relaxation * wanted[i, 1]
+        ux = velocity[i, 0] + relaxation * desired[i, 0]
+        uy = velocity[i, 1] + relaxation * desired[i, 1]
         ahead = ux * heading[i, 0] + uy * heading[i, 1]
         if ahead <= 0.0:
             continue  # about to stop or step back
@@ -44,8 +44,8 @@ def limit_all(
             discs, int(row[i]), heading[i, 0], heading[i, 1], time, oncoming_time, room, half_width
         )
         if ahead > fastest:
-            wanted[i, 0] -= (ahead - fastest) / relaxation * heading[i, 0]
-            wanted[i, 1] -= (ahead - fastest) / relaxation * heading[i, 1]
+            desired[i, 0] -= (ahead - fastest) / relaxation * heading[i, 0]
+            desired[i, 1] -= (ahead - fastest) / relaxation * heading[i, 1]
 
 
 @kernel

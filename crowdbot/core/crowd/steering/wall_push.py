@@ -19,7 +19,7 @@ LEAST = 4.6  # e-folds: 1 %
 def push_off_walls(
     decides: Mask, position: Array, radius: Array, walls: Array,
     frame: Array, first: Indices, near: Indices,
-    strength: float, reach: float, wanted: Array,
+    strength: float, reach: float, desired: Array,
 ) -> None:  # fmt: skip
     """Add the pushes of all walls on people who decide, in place.
 
@@ -28,9 +28,9 @@ def push_off_walls(
         walls: (S, 4), m; frame, first, near: their `SegmentGrid`, for the largest radius and
             `LEAST` times the reach.
         strength, reach: see `WallPushSpec`.
-        wanted: (N, 2) accelerations, m/s^2.
+        desired: (N, 2) accelerations, m/s^2.
     """
-    for i in range(wanted.shape[0]):
+    for i in range(desired.shape[0]):
         if not decides[i]:
             continue
         x, y, far = position[i, 0], position[i, 1], radius[i] + LEAST * reach
@@ -50,5 +50,5 @@ def push_off_walls(
             if distance == 0.0 or distance > far:
                 continue
             push = min(HARDEST, strength * math.exp((radius[i] - distance) / reach)) / distance
-            wanted[i, 0] += push * dx
-            wanted[i, 1] += push * dy
+            desired[i, 0] += push * dx
+            desired[i, 1] += push * dy

@@ -20,7 +20,7 @@ E_FOLD = 0.93929
 
 @kernel
 def wander_all(
-    decides: Mask, ids: Indices, knots: float, deviation: float, key: np.uint64, wanted: Array
+    decides: Mask, ids: Indices, knots: float, deviation: float, key: np.uint64, desired: Array
 ) -> None:
     """Add the random acceleration of people who decide, in place.
 
@@ -29,13 +29,13 @@ def wander_all(
         knots: the time in knots.
         deviation: see `WanderSpec`.
         key: as of `Steering`.
-        wanted: (N, 2) accelerations, m/s^2.
+        desired: (N, 2) accelerations, m/s^2.
     """
-    for i in range(wanted.shape[0]):
+    for i in range(desired.shape[0]):
         if decides[i]:
             x, y = wandering(ids[i], knots, key)
-            wanted[i, 0] += deviation * x
-            wanted[i, 1] += deviation * y
+            desired[i, 0] += deviation * x
+            desired[i, 1] += deviation * y
 
 
 @kernel

@@ -27,7 +27,7 @@ def check_numbers(costs: WeightedCosts, view: CrowdView, around: Surroundings) -
         report_broken(costs, view, "a cost")
 
 
-def report_broken(costs: WeightedCosts, view: CrowdView | None, what: str) -> NoReturn:
+def report_broken(costs: WeightedCosts, view: CrowdView | None, quantity: str) -> NoReturn:
     """Report the function that returned NaN: the one that does so again, or else all that may have.
 
     Raises:
@@ -36,9 +36,9 @@ def report_broken(costs: WeightedCosts, view: CrowdView | None, what: str) -> No
     guilty = [c for c in costs.compiled if view is not None and _is_broken(costs, c, view)]
     for cost in guilty or costs.compiled:
         if cost.call is not None and (guilty or len(costs.compiled) == 1):
-            cost.call.fail(f"returned NaN as {what}")
-    names = " or ".join(c.call.who for c in guilty or costs.compiled if c.call is not None)
-    raise PluginError(f"{names or 'a cost function'} returned NaN as {what}")
+            cost.call.fail(f"returned NaN as {quantity}")
+    names = " or ".join(c.call.title for c in guilty or costs.compiled if c.call is not None)
+    raise PluginError(f"{names or 'a cost function'} returned NaN as {quantity}")
 
 
 def _is_broken(costs: WeightedCosts, cost: CompiledCost, view: CrowdView) -> bool:

@@ -38,29 +38,32 @@ def _call(signature: Any, *given: Any) -> tuple[Any, Any]:
     Records, arrays and integers become pointers here.
     """
     pointers = types.CPointer | types.Record
-    taken = [types.intp if isinstance(wanted, pointers) else wanted for wanted in signature.args]
+    taken = [
+        types.intp if isinstance(llvm_types, pointers) else llvm_types
+        for llvm_types in signature.args
+    ]
     for k, actual in enumerate(given):
         if isinstance(actual, types.Record | types.Array):
             taken[k] = actual
 
     def generate(context: Any, builder: Any, _: Any, values: Any) -> Any:
-        wanted = [context.get_value_type(a) for a in signature.args]
-        kind = ir.FunctionType(context.get_value_type(signature.return_type), wanted)
+        llvm_types = [context.get_value_type(a) for a in signature.args]
+        kind = ir.FunctionType(context.get_value_type(signature.return_type), llvm_types)
         arguments = [
             _pointer(context, builder, how, value, want)
             if isinstance(want, ir.PointerType)
             else value
-            for how, value, want in zip(taken, values[1:], wanted, strict=True)
+            for how, value, want in zip(taken, values[1:], llvm_types, strict=True)
         ]
         return builder.call(builder.inttoptr(values[0], kind.as_pointer()), arguments)
 
     return signature.return_type(types.intp, *taken), generate
 
 
-def _pointer(context: Any, builder: Any, kind: Any, value: Any, wanted: Any) -> Any:
+def _pointer(context: Any, builder: Any, kind: Any, value: Any, llvm_type: Any) -> Any:
     if isinstance(kind, types.Integer):
-        return builder.inttoptr(value, wanted)
-    return builder.bitcast(start_of(context, builder, kind, value), wanted)
+        return builder.inttoptr(value, llvm_type)
+    return builder.bitcast(start_of(context, builder, kind, value), llvm_type)
 
 
 def _base(

@@ -123,20 +123,20 @@ def _states(item: Item, dt: float, report: Report) -> list[Point]:
     states += trajectory.every("state") if trajectory else []
     if trajectory is None and occupied is not None:
         states += occupied.every("occupancy")
-    found: list[Point] = []
+    points: list[Point] = []
     for state in states:
         time = _exact(state.need("time")) * dt
         shape = state.find("position") or state.need("shape")
         x, y = _middle(shape, report)
         report.others(state, SCENARIO.rows[8].note, *_OF_MOTION)
-        if found and time == found[-1][0]:  # the first occupancy is the initial state
+        if points and time == points[-1][0]:  # the first occupancy is the initial state
             continue
-        if found and time < found[-1][0]:
+        if points and time < points[-1][0]:
             state.refuse("the times of a person have to rise")
-        found.append((time, x, y))
-    if len(found) == 1:  # stands
-        found.append((found[0][0] + 1.0, *found[0][1:]))
-    return found
+        points.append((time, x, y))
+    if len(points) == 1:  # stands
+        points.append((points[0][0] + 1.0, *points[0][1:]))
+    return points
 
 
 def _middle(position: Item, report: Report) -> tuple[float, float]:

@@ -129,14 +129,14 @@ def _agent(name: Item, parameters: Item, policy: str, scene: Draft, report: Repo
 
 def _goals(item: Item, parameters: Item, report: Report) -> list[list[float]]:
     listed, shared = item.find("goals"), parameters.find("global_goals")
-    found = []
+    goals = []
     for name in listed.every() if listed else []:
         goal = (shared.find(name.text()) if shared else None) or item.need(name.text())
-        found.append([goal.need("x").number(), goal.need("y").number()])
+        goals.append([goal.need("x").number(), goal.need("y").number()])
         report.carried(name, "crowd.agents.goals")
         report.carried(goal, "crowd.agents.goals")
         report.others(goal, MORE.rows[3].note, "h", "z")
-    return found
+    return goals
 
 
 def _behave(item: Item, row: Data, report: Report) -> None:

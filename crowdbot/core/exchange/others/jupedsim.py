@@ -227,20 +227,20 @@ def _model(root: Item, scene: Draft, report: Report) -> None:
 
 def _journeys(root: Item, places: _Places, report: Report) -> dict[str, list[str]]:
     """Return the names of the stages of each journey, in turn."""
-    found: dict[str, list[str]] = {}
+    journeys: dict[str, list[str]] = {}
     starts = {item.name for item in _entries(root, "distributions")}
     known = {*places.exits, *places.checkpoints, *starts}
     for listed, stages in (("journeys_v2", "sequence"), ("journeys", "stages")):
         for item in _entries(root, listed):
             ident = item.need("id").text()
             names = item.find(stages)
-            found[ident] = [part.text() for part in names.every()] if names else []
+            journeys[ident] = [part.text() for part in names.every()] if names else []
             report.interpreted(item, "crowd.streams", SCENARIO.rows[8].note)
             for part in names.every() if names else ():
                 if part.text() not in known:
                     report.left_out(part, f"no exit or checkpoint '{part.text()[:60]}'")
             report.others(item, "journeys have no such parameter")
-    return found
+    return journeys
 
 
 def _distribution(
@@ -291,17 +291,17 @@ def _ways(
         chosen.append((journeys[ident.text()], share.number(0.0) if share else 1.0))
     if not chosen:
         chosen = [(stages, 1.0) for stages in journeys.values() if item.name in stages]
-    found: list[tuple[list[Data], float]] = []
+    ways: list[tuple[list[Data], float]] = []
     for stages, weight in chosen:
         way = [known[name] for name in stages if name in known]
         ends = [name for name in stages if name in places.exits]
         if not ends and places.exits:
             way.append(places.exits[places.nearest_exit(area)])
         if way and weight > 0.0:
-            found.append((way, weight))
-    if not found and places.exits:
-        found = [([places.exits[places.nearest_exit(area)]], 1.0)]
-    return found
+            ways.append((way, weight))
+    if not ways and places.exits:
+        ways = [([places.exits[places.nearest_exit(area)]], 1.0)]
+    return ways
 
 
 def _stream(

@@ -71,17 +71,17 @@ class RobotSfMap:
         return route.item, [[x - 1, y - 1], [x + 1, y - 1], [x + 1, y + 1], [x - 1, y + 1]]
 
 
-def scenes_of(found: RobotSfMap, name: str, note: str, report: Report) -> list[Draft]:
+def scenes_of(sf_map: RobotSfMap, name: str, note: str, report: Report) -> list[Draft]:
     """Return one scene for each route of the robot, or one without a robot.
 
     Raises:
         SpecError: E402, a route names a zone that is not there.
     """
-    if not found.robot_routes:
-        found.robot_routes = _straight_routes(found, report)
-    _unused(found, report)
-    routes = found.robot_routes[:_MOST_ROUTES]
-    for route in found.robot_routes[_MOST_ROUTES:]:
+    if not sf_map.robot_routes:
+        sf_map.robot_routes = _straight_routes(sf_map, report)
+    _unused(sf_map, report)
+    routes = sf_map.robot_routes[:_MOST_ROUTES]
+    for route in sf_map.robot_routes[_MOST_ROUTES:]:
         report.left_out(route.item, f"more than {_MOST_ROUTES} routes")
     scenes = []
     chosen: list[RobotSfRoute | None] = [*routes]
@@ -89,17 +89,17 @@ def scenes_of(found: RobotSfMap, name: str, note: str, report: Report) -> list[D
         ending = f"-{way.spawn}-{way.goal}" if way is not None and len(routes) > 1 else ""
         scene = Draft(f"{name}{ending}")
         scene.notes.append(note)
-        _floor(found, scene, report)
+        _floor(sf_map, scene, report)
         if way is not None:
-            _robot(found, way, scene, report)
-        _people(found, scene, report)
+            _robot(sf_map, way, scene, report)
+        _people(sf_map, scene, report)
         scenes.append(scene)
     return scenes
 
 
-def _straight_routes(found: RobotSfMap, report: Report) -> list[RobotSfRoute]:
+def _straight_routes(sf_map: RobotSfMap, report: Report) -> list[RobotSfRoute]:
     """Return a route from each spawn zone of the robot to each of its goal zones."""
-    spawns, goals = (found.zones.get(f"robot_{n}_zone", {}) for n in ("spawn", "goal"))
+    spawns, goals = (sf_map.zones.get(f"robot_{n}_zone", {}) for n in ("spawn", "goal"))
     made = []
     for start, (item, corners) in spawns.items():
         for end, (_, others) in goals.items():
@@ -107,16 +107,16 @@ def _straight_routes(found: RobotSfMap, report: Report) -> list[RobotSfRoute]:
             made.append(RobotSfRoute(item, start, end, points))
     if made:
         note = "from each spawn zone to each goal zone: the map has no robot_route"
-        report.added("robots.task", note, found.item.mark)
+        report.added("robots.task", note, sf_map.item.mark)
     return made
 
 
-def _unused(found: RobotSfMap, report: Report) -> None:
+def _unused(sf_map: RobotSfMap, report: Report) -> None:
     """Record zones that no route begins or ends in."""
-    for owner, routes in (("robot", found.robot_routes), ("ped", found.ped_routes)):
+    for owner, routes in (("robot", sf_map.robot_routes), ("ped", sf_map.ped_routes)):
         for kind in ("spawn", "goal"):
             named = {route.spawn if kind == "spawn" else route.goal for route in routes}
-            for number, (item, _) in found.zones.get(f"{owner}_{kind}_zone", {}).items():
+            for number, (item, _) in sf_map.zones.get(f"{owner}_{kind}_zone", {}).items():
                 if number not in named:
                     report.left_out(item, f"no route of {_NAMES[owner]} has {kind}_id {number}")
 
@@ -124,14 +124,14 @@ def _unused(found: RobotSfMap, report: Report) -> None:
 _NAMES = {"robot": "the robot", "ped": "people"}
 
 
-def _floor(found: RobotSfMap, scene: Draft, report: Report) -> None:
-    if found.bounds is not None:
-        x0, x1, y0, y1 = found.bounds
+def _floor(sf_map: RobotSfMap, scene: Draft, report: Report) -> None:
+    if sf_map.bounds is not None:
+        x0, x1, y0, y1 = sf_map.bounds
         scene.environment = {"kind": "floor", "border": "walls",
                              "area": {"x": [x0, x1], "y": [y0, y1]}}  # fmt: skip
-    scene.origins["environment",] = found.item.mark
-    for item, corners in found.obstacles:
-        inside = _within(corners, found.bounds)
+    scene.origins["environment",] = sf_map.item.mark
+    for item, corners in sf_map.obstacles:
+        inside = _within(corners, sf_map.bounds)
         add_polygon(scene, report, item, inside)
         report.carried(item, "environment.blocks")
 
@@ -144,9 +144,9 @@ def _within(corners: Corners, bounds: tuple[float, float, float, float] | None) 
     return [[min(max(x, x0), x1), min(max(y, y0), y1)] for x, y in corners]
 
 
-def _robot(found: RobotSfMap, route: RobotSfRoute, scene: Draft, report: Report) -> None:
-    _, spawn = found.zone("robot_spawn_zone", route.spawn, route)
-    item, goal = found.zone("robot_goal_zone", route.goal, route)
+def _robot(sf_map: RobotSfMap, route: RobotSfRoute, scene: Draft, report: Report) -> None:
+    _, spawn = sf_map.zone("robot_spawn_zone", route.spawn, route)
+    item, goal = sf_map.zone("robot_goal_zone", route.goal, route)
     start_area, _ = rectangle_in(spawn)
     goal_area, how = rectangle_in(goal)
     x, y = middle(start_area)
@@ -161,11 +161,11 @@ def _robot(found: RobotSfMap, route: RobotSfRoute, scene: Draft, report: Report)
     report.added("robots.robot.model", "a TurtleBot2", route.item.mark)
 
 
-def _people(found: RobotSfMap, scene: Draft, report: Report) -> None:
+def _people(sf_map: RobotSfMap, scene: Draft, report: Report) -> None:
     streams: Data = {}
-    for route in found.ped_routes:
-        _, spawn = found.zone("ped_spawn_zone", route.spawn, route)
-        _, goal = found.zone("ped_goal_zone", route.goal, route)
+    for route in sf_map.ped_routes:
+        _, spawn = sf_map.zone("ped_spawn_zone", route.spawn, route)
+        _, goal = sf_map.zone("ped_goal_zone", route.goal, route)
         origin, destination = rectangle_in(spawn)[0], rectangle_in(goal)[0]
         length = _length(route.points)
         count = max(1, min(round(DENSITY * WIDTH * length), round(0.8 * size(origin))))
@@ -176,15 +176,15 @@ def _people(found: RobotSfMap, scene: Draft, report: Report) -> None:
         scene.origins["crowd", "streams", name] = route.item.mark
         note = f"{DENSITY} people/m^2 on a way {WIDTH:g} m wide; they find their own way"
         report.interpreted(route.item, "crowd.streams", note)
-    _crowded(found, scene, streams, report)
+    _crowded(sf_map, scene, streams, report)
     if streams:
         scene.crowd["streams"] = streams
         scene.crowd["speed"] = {"mean": 1.3, "std": 0.2}
-    if streams or found.people:
-        policy = scene.policy(social_forces(), "social_forces", found.item.mark)
+    if streams or sf_map.people:
+        policy = scene.policy(social_forces(), "social_forces", sf_map.item.mark)
         scene.crowd["routing"] = {"kind": "mesh"}
-        report.added("crowd.policy", "its social force model is ours of 1995", found.item.mark)
-        for person in found.people:
+        report.added("crowd.policy", "its social force model is ours of 1995", sf_map.item.mark)
+        for person in sf_map.people:
             _single(person, policy, scene, report)
 
 
@@ -192,8 +192,8 @@ def _length(points: Corners) -> float:
     return sum(math.dist(a, b) for a, b in pairwise(points))
 
 
-def _crowded(found: RobotSfMap, scene: Draft, streams: Data, report: Report) -> None:
-    for number, (item, corners) in found.zones.get("ped_crowded_zone", {}).items():
+def _crowded(sf_map: RobotSfMap, scene: Draft, streams: Data, report: Report) -> None:
+    for number, (item, corners) in sf_map.zones.get("ped_crowded_zone", {}).items():
         area, _ = rectangle_in(corners)
         name = free_name(f"crowded_{number}", streams)
         scene.crowd.setdefault("goal_areas", {})[name] = {"area": area_of(area)}

@@ -75,18 +75,18 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
 
 
 def _svg(root: Item, report: Report) -> RobotSfMap:
-    found = RobotSfMap(root)
-    corner = _bounds(root, found, report)
+    sf_map = RobotSfMap(root)
+    corner = _bounds(root, sf_map, report)
     starts: dict[str, tuple[Item, list[float]]] = {}
     goals: dict[str, list[float]] = {}
     for item in list(root.walk()):
         label = _label(item) if item.name in _DRAWN else ""
         if label:
-            _labelled(item, label, found, (starts, goals), report)
+            _labelled(item, label, sf_map, (starts, goals), report)
     for ident, (item, start) in starts.items():
         ends = [goals.pop(ident)] if ident in goals else []
-        found.people.append(Person(item, [start, *ends]))
-    _move(found, corner)
+        sf_map.people.append(Person(item, [start, *ends]))
+    _move(sf_map, corner)
     for item in root.walk():
         if item.used and item.name in _DRAWN:
             _style(item, report)
@@ -96,10 +96,10 @@ def _svg(root: Item, report: Report) -> RobotSfMap:
         if not item.used:
             row = SVG.rows[-2 if item.name == "@transform" else -1]
             report.left_out(item, row.note)
-    return found
+    return sf_map
 
 
-def _bounds(root: Item, found: RobotSfMap, report: Report) -> tuple[float, float]:
+def _bounds(root: Item, sf_map: RobotSfMap, report: Report) -> tuple[float, float]:
     """Set the bounds of a map; return the corner that its coordinates count from, m."""
     box = root.find("@viewBox")
     numbers = [Item("@viewBox", box.mark, t).number() for t in _APART.split(box.text().strip())
@@ -109,7 +109,7 @@ def _bounds(root: Item, found: RobotSfMap, report: Report) -> tuple[float, float
     left, top, wide, high = numbers or [0.0] * 4
     width, height = _length(root, "@width") or wide, _length(root, "@height") or high
     if width > 0.0 and height > 0.0:
-        found.bounds = (0.0, width, 0.0, height)
+        sf_map.bounds = (0.0, width, 0.0, height)
         report.carried(root, "environment.area")
         if box is not None and (wide, high) != (width, height):
             note = f"counts only for its corner: the map is {width:g} m x {height:g} m, not scaled"
@@ -117,14 +117,14 @@ def _bounds(root: Item, found: RobotSfMap, report: Report) -> tuple[float, float
     return left, top
 
 
-def _move(found: RobotSfMap, corner: tuple[float, float]) -> None:
+def _move(sf_map: RobotSfMap, corner: tuple[float, float]) -> None:
     """Let the coordinates of a map count from a corner (m)."""
     if corner == (0.0, 0.0):
         return
-    lists = [corners for _, corners in found.obstacles]
-    lists += [c for zones in found.zones.values() for _, c in zones.values()]
-    lists += [route.points for route in [*found.robot_routes, *found.ped_routes]]
-    lists += [person.points for person in found.people]
+    lists = [corners for _, corners in sf_map.obstacles]
+    lists += [c for zones in sf_map.zones.values() for _, c in zones.values()]
+    lists += [route.points for route in [*sf_map.robot_routes, *sf_map.ped_routes]]
+    lists += [person.points for person in sf_map.people]
     for points in lists:
         points[:] = [[x - corner[0], y - corner[1]] for x, y in points]
 
@@ -156,16 +156,16 @@ def _length(root: Item, name: str) -> float:
 
 
 def _labelled(
-    item: Item, label: str, found: RobotSfMap,
+    item: Item, label: str, sf_map: RobotSfMap,
     singles: tuple[dict[str, tuple[Item, list[float]]], dict[str, list[float]]], report: Report,
 ) -> None:  # fmt: skip
     if label in ("obstacle", "bound"):
         item.used = True
-        found.obstacles.append((item, points_of(item, report)))
+        sf_map.obstacles.append((item, points_of(item, report)))
     elif zone := _ZONE.fullmatch(label):
         item.used = True
         kind = "ped_crowded_zone" if zone[1] == "crowded_zone" else zone[1]
-        known = found.zones.setdefault(kind, {})
+        known = sf_map.zones.setdefault(kind, {})
         number = int(zone[2]) if zone[2] else _number(item)
         if number is None or number in known:
             number = next(k for k in range(len(known) + 1) if k not in known)
@@ -176,7 +176,7 @@ def _labelled(
         points = points_of(item, report)
         if len(points) < 2:
             item.refuse("a route of fewer than two points")
-        into = found.robot_routes if route[1] == "robot" else found.ped_routes
+        into = sf_map.robot_routes if route[1] == "robot" else sf_map.ped_routes
         into.append(RobotSfRoute(item, int(route[2] or 0), int(route[3] or 0), points))
     elif single := _SINGLE.fullmatch(label):
         item.used = True
@@ -200,38 +200,38 @@ def _style(item: Item, report: Report) -> None:
 
 
 def _data(root: Item, report: Report) -> RobotSfMap:
-    found = RobotSfMap(root)
-    _margins(root, found, report)
+    sf_map = RobotSfMap(root)
+    _margins(root, sf_map, report)
     for item in [*_entries(root, "obstacles"), *_entries(root, "Obstacles")]:
         report.others(item, "blocks have names of their own", "ID")
         vertices = item.find("vertices") or item.find("Vertex")
-        found.obstacles.append((item, pairs(vertices or item)))
+        sf_map.obstacles.append((item, pairs(vertices or item)))
     for kind in ("robot_spawn", "robot_goal", "ped_spawn", "ped_goal", "ped_crowded"):
         listed = _entries(root, f"{kind}_zones")
         if kind.endswith("goal") and not listed:
             listed = _entries(root, "goal_zones")
-        known = found.zones.setdefault(f"{kind}_zone", {})
+        known = sf_map.zones.setdefault(f"{kind}_zone", {})
         for item in listed:
             known[len(known)] = (item, _zone(item))
             report.carried(item, "zones")
-    for kind, into in (("robot", found.robot_routes), ("ped", found.ped_routes)):
+    for kind, into in (("robot", sf_map.robot_routes), ("ped", sf_map.ped_routes)):
         for item in _entries(root, f"{kind}_routes"):
             points = pairs(item.need("waypoints"), 2)
             spawn, goal = item.need("spawn_id").whole(0), item.need("goal_id").whole(0)
             into.append(RobotSfRoute(item, spawn, goal, points))
     for item in _entries(root, "single_pedestrians"):
-        found.people.append(_single(item, report))
-    return found
+        sf_map.people.append(_single(item, report))
+    return sf_map
 
 
-def _margins(root: Item, found: RobotSfMap, report: Report) -> None:
+def _margins(root: Item, sf_map: RobotSfMap, report: Report) -> None:
     """Set the bounds of a map in JSON or YAML."""
     margins = [root.find(name) for name in ("x_margin", "y_margin")]
     if all(margins):
         numbers = [part.number() for m in margins if m for part in m.every()]
         if len(numbers) != 4 or not (numbers[0] < numbers[1] and numbers[2] < numbers[3]):
             root.refuse("x_margin and y_margin have to be two rising numbers each")
-        found.bounds = (numbers[0], numbers[1], numbers[2], numbers[3])
+        sf_map.bounds = (numbers[0], numbers[1], numbers[2], numbers[3])
         for m in margins:
             if m is not None:
                 report.carried(m, "environment.area")

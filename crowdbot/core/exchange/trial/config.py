@@ -53,32 +53,32 @@ def find_trials(files: Sequence[OpenedScene], context: Context) -> Trials:
     Raises:
         SpecError: a named file is missing or is not what it should be.
     """
-    found = Trials()
+    trials = Trials()
     configs = [f for f in files if "Config" in f.tags]
     orders = [f for f in files if f.kind == "text"]
     for file in configs:
         for root in file.roots:
-            named = _config(root, found, context.report)
+            named = _config(root, trials, context.report)
             if named is not None:
-                path = companion(named, file.path, _replaced(named.text(), found))
+                path = companion(named, file.path, _replaced(named.text(), trials))
                 if path.resolve() not in {f.path.resolve() for f in orders}:
                     orders.append(context.open(path))
     for file in orders:
-        _order(file, found, context)
+        _order(file, trials, context)
     for file in files:
         if "Trial" in file.tags:
-            found.add(file)
-    return found
+            trials.add(file)
+    return trials
 
 
-def _config(root: Item, found: Trials, report: Report) -> Item | None:
+def _config(root: Item, trials: Trials, report: Report) -> Item | None:
     named = None
     experience = root.find("experience")
     if experience is not None:
         user = experience.find("@currentUser")
         if user is not None:
             number = user.whole(0)
-            found.words = {"{USER}": str(number), "{TWO}": str(number % 2)}
+            trials.words = {"{USER}": str(number), "{TWO}": str(number % 2)}
             report.interpreted(user, "suite", CONFIG.rows[1].note)
         start = experience.find("@startingTrial")
         if start is not None:
@@ -96,24 +96,24 @@ def _config(root: Item, found: Trials, report: Report) -> Item | None:
     return named
 
 
-def _order(file: OpenedScene, found: Trials, context: Context) -> None:
+def _order(file: OpenedScene, trials: Trials, context: Context) -> None:
     for number, line in enumerate(file.text.split("\n")):
         if not line.strip():
             continue
         item = Item("FileOrder", Mark(file.source, number, 0, max(1, len(line))), line)
-        path: Path = companion(item, file.path, _replaced(line, found))
+        path: Path = companion(item, file.path, _replaced(line, trials))
         context.report.carried(item, "suite.matrix.trial")
-        if found.has(path):
+        if trials.has(path):
             continue
-        if len(found.files) == _MOST:
+        if len(trials.files) == _MOST:
             item.refuse(f"more than {_MOST} trials")
         trial = context.open(path)
         if "Trial" not in trial.tags:
             item.refuse(f"{path.name} is not a trial")
-        found.add(trial)
+        trials.add(trial)
 
 
-def _replaced(text: str, found: Trials) -> str:
-    for word, value in found.words.items():
+def _replaced(text: str, trials: Trials) -> str:
+    for word, value in trials.words.items():
         text = text.replace(word, value)
     return text

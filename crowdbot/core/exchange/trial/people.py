@@ -123,13 +123,13 @@ def _pose(item: Item, report: Report) -> tuple[list[float], float]:
 
 def _speeds(motion: Motion, sim: Simulated | None) -> Data:
     """Return speeds and limits: those of the sim, else of the law."""
-    found: Data = {"speed": motion.speed or 1.33}
+    data: Data = {"speed": motion.speed or 1.33}
     if motion.max_acceleration is not None:
-        found["max_acceleration"] = motion.max_acceleration
+        data["max_acceleration"] = motion.max_acceleration
     if sim is not None:
-        found |= sim.fields
+        data |= sim.fields
         if "max_speed" not in sim.fields:
-            found["max_speed"] = max(found["speed"], 1.8)
+            data["max_speed"] = max(data["speed"], 1.8)
     else:
-        found["max_speed"] = max(found["speed"], 0.01)
-    return {name: v for name, v in found.items() if not (isinstance(v, float) and math.isnan(v))}
+        data["max_speed"] = max(data["speed"], 0.01)
+    return {name: v for name, v in data.items() if not (isinstance(v, float) and math.isnan(v))}

@@ -141,14 +141,16 @@ def read_policies(root: Item, report: Report) -> dict[int, tuple[Data, Item]]:
     Raises:
         SpecError: E402, an id is there twice.
     """
-    found: dict[int, tuple[Data, Item]] = {}
+    policies: dict[int, tuple[Data, Item]] = {}
     for item in root.every("Policy"):
         ident = item.need("@id")
         number = ident.whole(0)
-        if number in found:
-            ident.refuse(f"policy {number} is there twice; the first is at {found[number][1].mark}")
+        if number in policies:
+            ident.refuse(
+                f"policy {number} is there twice; the first is at {policies[number][1].mark}"
+            )
         report.carried(ident, "crowd.policies")
-        found[number] = read_policy(item, report), item
-    if not found:
+        policies[number] = read_policy(item, report), item
+    if not policies:
         root.refuse("Policies without a Policy")
-    return found
+    return policies

@@ -59,20 +59,20 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     Raises:
         SpecError: E402, a part has a value that cannot be.
     """
-    report, found = context.report, _Elements()
+    report, elements = context.report, _Elements()
     for file in files:
         for root in file.roots:
-            _collect(root, file.path, found, context)
+            _collect(root, file.path, elements, context)
     sets: list[tuple[Policies, Path | None]] = [
-        (read_policies(item, report), path) for item, path in found.of("Policies")
+        (read_policies(item, report), path) for item, path in elements.of("Policies")
     ]
-    crowds: list[tuple[Item | None, Path | None]] = [*found.of("Agents")]
+    crowds: list[tuple[Item | None, Path | None]] = [*elements.of("Agents")]
     scenes = []
     for agents, agents_path in crowds or [(None, None)]:
         for policies, policies_path in sets or [({}, None)]:
             scene = Draft()
-            _world(found, scene, report)
-            for item, _ in found.of("Obstacles"):
+            _world(elements, scene, report)
+            for item, _ in elements.of("Obstacles"):
                 read_obstacles(item, scene, report)
             if agents is not None:
                 read_agents(agents, policies, scene, report)
@@ -80,14 +80,14 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
                   files)  # fmt: skip
             _people_if_none(scene, policies, report, files[0].top)
             scenes.append(scene)
-    for root in found.named:
+    for root in elements.named:
         report.rest(root)
     return scenes
 
 
-def _collect(item: Item, path: Path, found: _Elements, context: Context) -> None:
+def _collect(item: Item, path: Path, elements: _Elements, context: Context) -> None:
     """Collect an element once, those within it and those of the files that it names."""
-    if any(item is known for known, _ in found.of(item.name)):
+    if any(item is known for known, _ in elements.of(item.name)):
         return
     report, item.used = context.report, True
     named = item.find("@file")
@@ -97,10 +97,10 @@ def _collect(item: Item, path: Path, found: _Elements, context: Context) -> None
         for root in other.roots:
             if root.name != item.name:
                 root.refuse(f"'{root.name}' where the file that names it expects '{item.name}'")
-            found.named.append(root)
-            _collect(root, other.path, found, context)
+            elements.named.append(root)
+            _collect(root, other.path, elements, context)
         return
-    found.elements.setdefault(item.name, []).append((item, path))
+    elements.elements.setdefault(item.name, []).append((item, path))
     if item.name == "Simulation":
         report.take(item, SIMULATION)
     if item.name in ("Simulation", "World"):
@@ -108,11 +108,11 @@ def _collect(item: Item, path: Path, found: _Elements, context: Context) -> None
             if part.name == "Obstacles" and item.name == "Simulation":
                 report.left_out(part, "UMANS itself ignores Obstacles beside World")
             else:
-                _collect(part, path, found, context)
+                _collect(part, path, elements, context)
 
 
-def _world(found: _Elements, scene: Draft, report: Report) -> None:
-    for item, _ in found.of("World")[-1:]:
+def _world(elements: _Elements, scene: Draft, report: Report) -> None:
+    for item, _ in elements.of("World")[-1:]:
         fields = report.take(item, WORLD)
         scene.origins["environment",] = item.mark
         if fields.get("border") == "toric":

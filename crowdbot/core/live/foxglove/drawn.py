@@ -34,7 +34,7 @@ def drawn_messages(path: Path) -> list[DrawnMessage]:
     Raises:
         InputError: the recording is damaged.
     """
-    found: list[DrawnMessage] = []
+    messages: list[DrawnMessage] = []
     with Recording(path) as opened:
         if not opened.holds_run:
             return []
@@ -45,8 +45,8 @@ def drawn_messages(path: Path) -> list[DrawnMessage]:
             if drawings:
                 topic = robot_topic(THOUGHTS, spaces[name] if name else "")
                 for one in placed_drawings(opened.trajectories(name), drawings):
-                    found += _messages(topic, one)
-    return sorted(found, key=lambda one: one.ns)
+                    messages += _messages(topic, one)
+    return sorted(messages, key=lambda one: one.ns)
 
 
 def latest_drawn(drawn: Sequence[DrawnMessage], ns: int) -> Iterator[DrawnMessage]:

@@ -142,11 +142,11 @@ async def _refuse(writer: asyncio.StreamWriter, status: str, problem: str) -> No
 def _headers(head: bytes) -> dict[str, list[str]] | None:
     """Return a request's headers; None for one that two readers could read differently."""
     lines = head.decode("latin-1").removesuffix("\r\n\r\n").split("\r\n")[1:]
-    found: dict[str, list[str]] = {}
+    headers: dict[str, list[str]] = {}
     for line in lines:
         name, colon, value = line.partition(":")
         token = name.replace("-", "").replace("_", "")
         if not colon or not token.isascii() or not token.isalnum() or {"\r", "\n"} & set(line):
             return None
-        found.setdefault(name.lower(), []).append(value.strip())
-    return found
+        headers.setdefault(name.lower(), []).append(value.strip())
+    return headers

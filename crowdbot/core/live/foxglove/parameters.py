@@ -23,8 +23,8 @@ def parameters(session: LiveSession, names: Iterable[str] = ()) -> list[Any]:
         "state": session.state,
         "robot": ", ".join(robot.name for robot in session.here),
     }
-    wanted = list(names) or list(values)
-    return [Parameter(name, value=values[name]) for name in wanted if name in values]
+    requested = list(names) or list(values)
+    return [Parameter(name, value=values[name]) for name in requested if name in values]
 
 
 def set_parameters(session: LiveSession, given: Iterable[Any]) -> str:

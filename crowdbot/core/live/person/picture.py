@@ -114,14 +114,14 @@ class LivePicture:
         """Return what flat lidars saw last, from the robots' true poses."""
         if not any(self._lidars.values()):
             return []
-        found = []
+        scans = []
         for name, obs in self.look().items():
             if name not in robots:
                 continue
             for sensor, info in self._lidars[name].items():
                 if sensor in obs.readings:
-                    found.append(_scan(info, obs.readings[sensor].values, robots[name][:3]))
-        return found
+                    scans.append(_scan(info, obs.readings[sensor].values, robots[name][:3]))
+        return scans
 
 
 def _is_flat_lidar(angles: Array | None) -> bool:

@@ -74,8 +74,8 @@ def _topics(world: RosapiWorld, add: Add) -> None:
         return {**both(values), "typedefs_full_text": texts}
 
     def of_type(values: Values) -> Values:
-        wanted = _text(values, "type").replace("/msg/", "/")
-        found = [n for n, t in world.topics().items() if t.replace("/msg/", "/") == wanted]
+        type_name = _text(values, "type").replace("/msg/", "/")
+        found = [n for n, t in world.topics().items() if t.replace("/msg/", "/") == type_name]
         return {"topics": found}
 
     lists = {"topics": "string[]", "types": "string[]"}
@@ -104,8 +104,10 @@ def _services(world: RosapiWorld, add: Add) -> None:
         return service.kind.replace("/srv/", "/") if world.ros == 1 else service.kind
 
     def of_type(values: Values) -> Values:
-        wanted = _text(values, "type").replace("/srv/", "/")
-        return {"services": [n for n in world.services if kind(n).replace("/srv/", "/") == wanted]}
+        type_name = _text(values, "type").replace("/srv/", "/")
+        return {
+            "services": [n for n in world.services if kind(n).replace("/srv/", "/") == type_name]
+        }
 
     add("services", {}, {"services": "string[]"}, lambda _: {"services": sorted(world.services)})
     add("services_for_type", {"type": "string"}, {"services": "string[]"}, of_type)
@@ -184,12 +186,12 @@ def _details(world: RosapiWorld, add: Add) -> None:
 
     def service(part: str) -> Callable[[Values], Values]:
         def call(values: Values) -> Values:
-            wanted = _text(values, "type").replace("/srv/", "/")
+            type_name = _text(values, "type").replace("/srv/", "/")
             for each in world.services.values():
-                if each.kind.replace("/srv/", "/") == wanted:
+                if each.kind.replace("/srv/", "/") == type_name:
                     fields = each.request if part == "Request" else each.response
-                    return {"typedefs": [_typedef(f"{wanted}{part}", fields)]}
-            raise InputError(f"there is no service type '{wanted}'")
+                    return {"typedefs": [_typedef(f"{type_name}{part}", fields)]}
+            raise InputError(f"there is no service type '{type_name}'")
 
         return call
 

@@ -65,8 +65,8 @@ def make_rules(version: int, allowed: Iterable[tuple[str, int]], *, network: boo
     """
     tcp = _TCP if version >= _ABI_TCP and not network else 0
     ruleset = _ruleset(version, known_rights(version), tcp)
-    for path, wanted in allowed:
-        allow(ruleset, path, wanted & known_rights(version))
+    for path, rights in allowed:
+        allow(ruleset, path, rights & known_rights(version))
     return ruleset
 
 

@@ -216,8 +216,8 @@ def _none_of_kinds(argument: int) -> list[bytes]:
     return [_load(argument), *harmless, *denied]
 
 
-def _masked(argument: int, mask: int, wanted: int) -> list[bytes]:
-    test = _jump(_EQUAL, wanted, 1, 0)
+def _masked(argument: int, mask: int, value: int) -> list[bytes]:
+    test = _jump(_EQUAL, value, 1, 0)
     return [_load(argument), _do(_AND, mask), test, _do(_RETURN, _DENY), _do(_RETURN, _ALLOW)]
 
 

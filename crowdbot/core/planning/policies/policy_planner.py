@@ -55,8 +55,8 @@ class PolicyPlanner:
         """
         del seed
         own = self._conventions
-        wanted = own.observation.needs
-        used = {n: i for n, i in sensors.items() if n in wanted or i.category in wanted}
+        needs = own.observation.needs
+        used = {n: i for n, i in sensors.items() if n in needs or i.category in needs}
         context = LearningContext(
             worlds=1, limits=limits, body=task.robot or _UNKNOWN, sensors=used, step=own.step
         )

@@ -23,8 +23,8 @@ class ProcessPlan:
     """The program of a planner process.
 
     Attributes:
-        who: start of every message about it.
-        what: for a planner in our Python, argument of `OwnSide`.
+        title: start of every message about it.
+        own_side: for a planner in our Python, argument of `OwnSide`.
         command: for any other program, its command line.
         folder: its working directory; empty: that of the simulator.
         parameters: its parameters; another program gets them in ``hello``.
@@ -36,8 +36,8 @@ class ProcessPlan:
         sealed: folder that holds all that it may declare; None: it may declare more.
     """
 
-    who: str
-    what: Mapping[str, Any] | None = None
+    title: str
+    own_side: Mapping[str, Any] | None = None
     command: Sequence[str] = ()
     folder: str = ""
     parameters: Mapping[str, Any] = field(default_factory=dict)
@@ -67,7 +67,7 @@ def check_sealed(plan: ProcessPlan) -> None:
         InputError: it declares other files, or asks for the network.
     """
     if plan.sealed is not None and (beyond := plan.needs.beyond(plan.sealed)):
-        raise InputError(f"{plan.who}: a sealed planner {beyond}")
+        raise InputError(f"{plan.title}: a sealed planner {beyond}")
 
 
 def _check_containment(plan: ProcessPlan) -> None:
@@ -79,7 +79,7 @@ def _check_containment(plan: ProcessPlan) -> None:
     missing = kernel_offer().missing
     if missing and plan.contained:
         raise InputError(
-            f"{plan.who}: it would not be contained ({missing}); "
+            f"{plan.title}: it would not be contained ({missing}); "
             "--not-contained runs it all the same"
         )
     if missing:
@@ -100,4 +100,4 @@ def _check_parameters(plan: ProcessPlan) -> None:
     try:
         msgpack.packb(dict(plan.parameters))
     except (TypeError, ValueError, OverflowError) as error:
-        raise InputError(f"{plan.who}: its parameters cannot be sent: {error}") from None
+        raise InputError(f"{plan.title}: its parameters cannot be sent: {error}") from None

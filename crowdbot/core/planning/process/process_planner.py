@@ -75,14 +75,14 @@ class ProcessPlanner:
             self._memory = SharedMemory() if has_shared_memory() else None
             self._line = self._start()
         except OSError as error:
-            raise InputError(f"{plan.who}: its process cannot be started: {error}") from None
+            raise InputError(f"{plan.title}: its process cannot be started: {error}") from None
         hello = self._ask("load", self._hello(), RESET_LIMIT, "hello")
         try:
             if hello.get("protocol") != PROTOCOL:
                 self._fail(
                     f"hello: it speaks protocol {hello.get('protocol')!r:.40}, not {PROTOCOL}"
                 )
-            self.description = read_description(hello, plan.who)
+            self.description = read_description(hello, plan.title)
         except InputError:
             self.close()
             raise
@@ -139,7 +139,7 @@ class ProcessPlanner:
 
     def _started(self) -> PlannerLine:
         plan = self._plan
-        server = POOL.take(own=plan.what is not None)
+        server = POOL.take(own=plan.own_side is not None)
         theirs_in, ours_out = os.pipe()
         ours_in, theirs_out = os.pipe()
         output, theirs_output = os.pipe()
@@ -148,7 +148,7 @@ class ProcessPlanner:
             server.has_imported(plan.preload)
             server.start(
                 {
-                    "what": plan.what,
+                    "what": plan.own_side,
                     "command": list(plan.command),
                     "folder": plan.folder or _here(),
                     "memory": plan.memory,
@@ -165,7 +165,7 @@ class ProcessPlanner:
             for one in (theirs_in, theirs_out, theirs_output):
                 os.close(one)
         self._server = server
-        return PlannerLine(ours_out, ours_in, output, plan.who, server.descriptor)
+        return PlannerLine(ours_out, ours_in, output, plan.title, server.descriptor)
 
     def _hello(self) -> dict[str, Any]:
         return {
@@ -176,7 +176,7 @@ class ProcessPlanner:
         }
 
     def _ask(
-        self, doing: str, message: dict[str, Any], limit: float, *wanted: str
+        self, doing: str, message: dict[str, Any], limit: float, *reply_type: str
     ) -> dict[str, Any]:
         """Send a request and return a reply of the expected type.
 
@@ -188,17 +188,17 @@ class ProcessPlanner:
             where = self._end(ask=True)[1]
             self._raise(f"did not {doing} within {limit:g} s; its process was ended{where}")
         except LineClosed:
-            raise ProcessDiedError(printable(f"{self._plan.who}: {self._gone(doing)}")) from None
+            raise ProcessDiedError(printable(f"{self._plan.title}: {self._gone(doing)}")) from None
         except WrongAnswer as error:
             self._fail(f"{error}")
         except BaseException:  # the user's interrupt
             self.close()
             raise
-        if self._plan.what is not None:
+        if self._plan.own_side is not None:
             say_old_names(answer.get("old_names", ()))
         if answer.get("type") == "error":
             self._failed(answer)
-        if answer.get("type") not in wanted or answer.get("step", 0) != message.get("step", 0):
+        if answer.get("type") not in reply_type or answer.get("step", 0) != message.get("step", 0):
             self._fail(f"answered {answer.get('type')!r:.40} to '{message['type']}'")
         return answer
 
@@ -216,7 +216,7 @@ class ProcessPlanner:
         if "BdbQuit" in text:
             text += "; to use a debugger, let the planner run --in-process"
         error = InputError if answer.get("kind") == "input" else PlannerError
-        raise error(text if answer.get("whole") is True else f"{self._plan.who}: {text}")
+        raise error(text if answer.get("whole") is True else f"{self._plan.title}: {text}")
 
     def _gone(self, doing: str) -> str:
         """Describe how a process without a reply ended."""
@@ -264,7 +264,7 @@ class ProcessPlanner:
         self._raise(problem)
 
     def _raise(self, problem: str) -> NoReturn:
-        raise ProcessLostError(printable(f"{self._plan.who}: {problem}"))
+        raise ProcessLostError(printable(f"{self._plan.title}: {problem}"))
 
     # --------------------------------------------------------------------- answers
     def _pass_on(self, answer: Mapping[str, Any], obs: Observation) -> None:

@@ -96,12 +96,12 @@ def count_descendants(root: int) -> int:
     below: dict[int, list[int]] = {}
     for pid, parent, _ in _processes():
         below.setdefault(parent, []).append(pid)
-    waiting, found = [root], 0
+    waiting, descendants = [root], 0
     while waiting:
         inside = below.get(waiting.pop(), [])
-        found += len(inside)
+        descendants += len(inside)
         waiting += inside
-    return found
+    return descendants
 
 
 def children(parent: int) -> list[int]:

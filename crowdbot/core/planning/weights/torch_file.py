@@ -134,14 +134,14 @@ def _weights(table: Any, numbers: Numbers, where: str) -> dict[str, Array]:
         total += _checked(view, f"{where}: {name[:60]!a}")
         if total > MOST_NUMBERS or view.storage.numbers > MOST_NUMBERS:
             raise InputError(f"{where}: more than {MOST_NUMBERS} numbers")
-    found = {}
+    weights = {}
     for name, view in views.items():
         flat = numbers(view.storage)
         shown_once = zip(view.stride, view.size, strict=True)
         strides = [s * flat.itemsize if n > 1 else 0 for s, n in shown_once]
         shown = np.lib.stride_tricks.as_strided(flat[view.offset :], view.size, strides)
-        found[name] = np.array(shown, dtype=np.float64, order="C")
-    return found
+        weights[name] = np.array(shown, dtype=np.float64, order="C")
+    return weights
 
 
 def _checked(view: TensorView, where: str) -> int:

@@ -75,19 +75,19 @@ def parts_of(own: CellStatistics, recorded: CellStatistics) -> dict[str, float]:
     Features that are undefined in the recordings are left out; if undefined for the compared
     people, they score 0.
     """
-    found = {}
+    parts = {}
     for name in FEATURES:
         if name in SHARES:
             there, here = recorded.shares[name], own.shares[name]
             if np.isfinite(there):
-                found[name] = 1.0 - abs(here - there) if np.isfinite(here) else 0.0
+                parts[name] = 1.0 - abs(here - there) if np.isfinite(here) else 0.0
             continue
         q, p = recorded.quantiles[name], own.quantiles[name]
         if np.isfinite(q).all():
             scale = max(float(q[-2] - q[1]), _RESOLUTION[name])
             away = float(np.abs(p - q).mean()) / scale
-            found[name] = max(0.0, 1.0 - away) if np.isfinite(away) else 0.0
-    return found
+            parts[name] = max(0.0, 1.0 - away) if np.isfinite(away) else 0.0
+    return parts
 
 
 def _mean(values: Mapping[Cell, float], weights: Mapping[Cell, float]) -> float:

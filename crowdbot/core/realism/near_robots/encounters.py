@@ -71,13 +71,13 @@ class RobotEncounter:
 
 def encounters_of(clips: Sequence[Clip]) -> list[RobotEncounter]:
     """Return all encounters in clips, person by person."""
-    found = []
+    encounters = []
     for clip in clips:
         for k in range(clip.people.shape[1]):
             one = _encounter(clip, k)
             if one is not None:
-                found.append(one)
-    return found
+                encounters.append(one)
+    return encounters
 
 
 def _encounter(clip: Clip, k: int) -> RobotEncounter | None:

@@ -22,14 +22,14 @@ from crowdbot.core.types.arrays import Array
 _WIDTH, _BASE, _TOP = 240.0, 116.0, 14.0
 
 
-def render(title: str, found: Sequence[RobotRealism]) -> str:
+def render(title: str, measured: Sequence[RobotRealism]) -> str:
     """Return the page as text; equal input gives equal text."""
-    sources = list(dict.fromkeys(s for one in found for s in one.reference.sources))
+    sources = list(dict.fromkeys(s for one in measured for s in one.reference.sources))
     return render_page(
         __package__,
         styles=("crowdbot.core.support:plain_page.css", "crowdbot.core.realism:page.css"),
         title=title,
-        responses=[_section(one) for one in found],
+        responses=[_section(one) for one in measured],
         sources=sources,
     )
 

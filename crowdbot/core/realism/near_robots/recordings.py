@@ -69,16 +69,16 @@ def clips_of_runs(files: Sequence[Path]) -> tuple[list[Clip], list[str]]:
     Raises:
         InputError: a recording cannot be read, or all are left out.
     """
-    found: list[Clip] = []
+    clips: list[Clip] = []
     without: list[str] = []
     for file in files:
         try:
-            found += clips_of_run(file)
+            clips += clips_of_run(file)
         except NothingToCompareError as error:
             without.append(str(error))
-    if not found:
+    if not clips:
         raise InputError(without[0])
-    return found, without
+    return clips, without
 
 
 def _table(path: Path) -> Clip:

@@ -109,13 +109,13 @@ def scenes_of(table: SceneTable, seed: int, count: int = COUNT) -> list[RobotEnc
     draws = {name: np.interp(_slices(rng, count), LEVELS, q) for name, q in table.quantiles.items()}
     which = np.searchsorted(np.cumsum([s for _, s in table.robots]), _slices(rng, count) * 0.999)
     first = _slices(rng, count) < table.first
-    found = []
+    scenes = []
     for k in range(count):
         robot = table.robots[min(int(which[k]), len(table.robots) - 1)][0]
         one = _scene({n: float(v[k]) for n, v in draws.items()}, robot, bool(first[k]), k)
         if one is not None:
-            found.append(one)
-    return found
+            scenes.append(one)
+    return scenes
 
 
 def _slices(rng: np.random.Generator, count: int) -> Array:

@@ -67,13 +67,13 @@ def statistics_of(
 ) -> dict[Cell, CellStatistics]:
     """Return the distributions of (E, F) features by cell, in a fixed order."""
     cells = [cell_of(e) for e in encounters]
-    found = {}
+    statistics = {}
     for kind in KINDS:
         for speed, _ in SPEEDS:
             here = np.array([c == (kind, speed) for c in cells], np.bool_)
             if here.any():
-                found[kind, speed] = _cell(features[here])
-    return found
+                statistics[kind, speed] = _cell(features[here])
+    return statistics
 
 
 def _cell(rows: Array) -> CellStatistics:

@@ -23,28 +23,28 @@ CELL_HEAD = ["encounter", "recorded", "index", "these people", "recorded people"
 FEATURE_HEAD = ["encounter", "feature", "these people", "recorded"]
 
 
-def cell_rows(found: RobotRealism) -> list[list[str]]:
+def cell_rows(realism: RobotRealism) -> list[list[str]]:
     """Return rows: cell, recorded encounters, index, score, ceiling and floor."""
     rows = [
-        ["all", str(sum(found.reference.weights.values())), f"{found.index:.2f}"]
-        + [f"{v:.3f}" for v in (found.score, found.ceiling, found.floor)]
+        ["all", str(sum(realism.reference.weights.values())), f"{realism.index:.2f}"]
+        + [f"{v:.3f}" for v in (realism.score, realism.ceiling, realism.floor)]
     ]
-    for cell, (index, *scores) in found.cells.items():
-        count = str(found.reference.whole[cell].count)
+    for cell, (index, *scores) in realism.cells.items():
+        count = str(realism.reference.whole[cell].count)
         rows.append([" ".join(cell), count, _two(index), *(f"{v:.3f}" for v in scores)])
     return rows
 
 
-def part_rows(found: RobotRealism) -> list[list[str]]:
+def part_rows(realism: RobotRealism) -> list[list[str]]:
     """Return rows: feature, similarity of these people and of those who ignore the robot."""
-    return [[_NAMES[n], f"{a:.3f}", f"{b:.3f}"] for n, (a, b) in found.parts.items()]
+    return [[_NAMES[n], f"{a:.3f}", f"{b:.3f}"] for n, (a, b) in realism.parts.items()]
 
 
-def feature_rows(found: RobotRealism) -> list[list[str]]:
+def feature_rows(realism: RobotRealism) -> list[list[str]]:
     """Return rows: cell, feature, median or share of these people and of recorded people."""
     rows = []
-    for cell in found.cells:
-        own, recorded = found.statistics.get(cell), found.reference.whole[cell]
+    for cell in realism.cells:
+        own, recorded = realism.statistics.get(cell), realism.reference.whole[cell]
         for name in FEATURES:
             values = [
                 np.nan if s is None

@@ -84,8 +84,8 @@ def _content(file: IO[bytes], place: AttachmentIndex) -> tuple[str, bytes]:
     crc = int.from_bytes(record[-4:], "little")
     if crc and crc != zlib.crc32(record[:-4]):
         raise ValueError(f"the checksum of '{place.name[:100]}' is another one")
-    found = Attachment.read(ReadDataStream(BytesIO(record)))
-    return found.name, found.data
+    attachment = Attachment.read(ReadDataStream(BytesIO(record)))
+    return attachment.name, attachment.data
 
 
 def _index(path: Path) -> tuple[FileIndex, int]:

@@ -181,19 +181,19 @@ class RobotContacts(LeafSystem):
             px, py = x - self._rows[k, RX], y - self._rows[k, RY]
             forces[k] += sign * np.array([fx, fy, px * fy - py * fx])
 
-    def _keep(self, i: int, j: int, found: RobotContactForces | None, t: float) -> None:
+    def _keep(self, i: int, j: int, forces: RobotContactForces | None, t: float) -> None:
         """Record this pair's contact."""
         going_on = self._going_on.get((i, j))
-        if found is None:
+        if forces is None:
             if going_on is not None and self._gap_exceeds(i, j):
                 self._finish(i, j)
             return
         if going_on is None:
-            sides = self._bearing(i, found.at), self._bearing(j, found.at)
-            going_on = self._going_on[i, j] = _Touch(t, t, found.speed, sides)
+            sides = self._bearing(i, forces.at), self._bearing(j, forces.at)
+            going_on = self._going_on[i, j] = _Touch(t, t, forces.speed, sides)
         going_on.end = t
-        going_on.impulse += found.force * TICK
-        going_on.peak = max(going_on.peak, found.force)
+        going_on.impulse += forces.force * TICK
+        going_on.peak = max(going_on.peak, forces.force)
 
     def _bearing(self, k: int, at: tuple[float, float]) -> float:
         row = self._rows[k]

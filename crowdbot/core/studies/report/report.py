@@ -95,19 +95,19 @@ def write_study_report(
 
 
 def _score(
-    name: str, found: Sequence[StudyFinding], titles: Sequence[str], registry: Registry
+    name: str, findings: Sequence[StudyFinding], titles: Sequence[str], registry: Registry
 ) -> dict[str, Any]:
     metric, _, variant = name.partition(".")
     component: Any = registry.components("metric").get(metric)
     known = None if component is None else component.variants.get(variant)
     unit = "" if known is None or known.unit in ("", "1") else f", {known.unit}"
     note = "" if known is None else _NOTES.get(known.better, "")
-    label = "; ".join(f"{t}: {_text(f.mean)}" for t, f in zip(titles, found, strict=True))
+    label = "; ".join(f"{t}: {_text(f.mean)}" for t, f in zip(titles, findings, strict=True))
     return {
         "name": name,
         "heading": f"{metric.replace('_', ' ')} ({variant.replace('_', ' ')}{unit})",
         "note": note,
-        "svg": Markup(dots(found, titles, f"{metric}: {label}")),  # noqa: S704 - it escapes
+        "svg": Markup(dots(findings, titles, f"{metric}: {label}")),  # noqa: S704 - it escapes
         "rows": [
             (
                 title,
@@ -118,7 +118,7 @@ def _score(
                 _p(f.p),
                 _p(f.adjusted),
             )
-            for title, f in zip(titles, found, strict=True)
+            for title, f in zip(titles, findings, strict=True)
         ],
     }
 

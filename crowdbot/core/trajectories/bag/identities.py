@@ -35,14 +35,14 @@ def persons_only(rows: Sequence[BodyRow], notes: list[str]) -> list[BodyRow]:
     Objects of unknown class are kept only if none is known to be a person.
     """
     roles = Counter(row.role for row in rows)
-    wanted = "person" if roles["person"] or not roles[_EVERYTHING_ELSE] else _EVERYTHING_ELSE
-    others = sorted(role for role in roles if role != wanted)
+    kept_role = "person" if roles["person"] or not roles[_EVERYTHING_ELSE] else _EVERYTHING_ELSE
+    others = sorted(role for role in roles if role != kept_role)
     if others:
         seen = ", ".join(f"{roles[role]} of kind '{role}'" for role in others)
         notes.append(f"rows of others than persons are left out: {seen}")
-    if wanted == _EVERYTHING_ELSE:
+    if kept_role == _EVERYTHING_ELSE:
         notes.append("no object is classified; all of unknown kind are taken for persons")
-    return [row for row in rows if row.role == wanted]
+    return [row for row in rows if row.role == kept_role]
 
 
 def label_field(rows: Sequence[BodyRow]) -> str | None:

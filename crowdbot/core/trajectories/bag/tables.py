@@ -71,8 +71,8 @@ def people_topics(path: Path) -> list[str]:
         InputError: it cannot be read.
     """
     found: dict[str, bool] = {}
-    wanted = {topic for topic, fields in topic_fields(path).items() if may_list_people(fields)}
-    for topic, _, message in messages(path, wanted) if wanted else ():
+    topics = {topic for topic, fields in topic_fields(path).items() if may_list_people(fields)}
+    for topic, _, message in messages(path, topics) if topics else ():
         shown = lists_people(message)
         if shown is not None:  # an empty list shows nothing
             found[topic] = found.get(topic, True) and shown

@@ -12,7 +12,9 @@ from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Mask
 
 
-def at_fault(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed: float) -> Mask:
+def at_fault(
+    run: Trajectories, contacts: PersonContacts, rule: FaultRule, jump_speed: float
+) -> Mask:
     """Return a mask of contacts (K,) that the robot causes.
 
     It moved towards the person with the touching point although it could have braked, it hit the
@@ -21,18 +23,20 @@ def at_fault(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_spe
     the person is unknown, a moving robot is at fault.
 
     Args:
-        run: the run of ``found``.
-        found: from `person_contacts`.
+        run: the run of ``contacts``.
+        contacts: from `person_contacts`.
         jump_speed: speed that detects teleports if none were recorded, m/s.
     """
-    key = "at_fault", rule, jump_speed, found.recorded, len(found)
-    return run.cached(key, lambda: _at_fault(run, found, rule, jump_speed))
+    key = "at_fault", rule, jump_speed, contacts.recorded, len(contacts)
+    return run.cached(key, lambda: _at_fault(run, contacts, rule, jump_speed))
 
 
-def _at_fault(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed: float) -> Mask:
-    braked = braked_in_time(run, rule, found.time, found.sample, found.agent, jump_speed)
-    driven = ~(found.closing <= rule.speed) & ~braked
-    pushed = pushed_on(run, found, rule, jump_speed)
-    came = swerved(run, found, rule, jump_speed)
-    moved = (driven | came) & ~shoved_into(run, found, rule, jump_speed)
-    return moved | pushed | cut_in(run, found, rule, jump_speed)
+def _at_fault(
+    run: Trajectories, contacts: PersonContacts, rule: FaultRule, jump_speed: float
+) -> Mask:
+    braked = braked_in_time(run, rule, contacts.time, contacts.sample, contacts.agent, jump_speed)
+    driven = ~(contacts.closing <= rule.speed) & ~braked
+    pushed = pushed_on(run, contacts, rule, jump_speed)
+    came = swerved(run, contacts, rule, jump_speed)
+    moved = (driven | came) & ~shoved_into(run, contacts, rule, jump_speed)
+    return moved | pushed | cut_in(run, contacts, rule, jump_speed)

@@ -13,7 +13,7 @@ from crowdbot.core.types.arrays import Array, Mask
 _STILL = 1e-6  # m/s
 
 
-def cut_in(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed: float) -> Mask:
+def cut_in(run: Trajectories, contacts: PersonContacts, rule: FaultRule, jump_speed: float) -> Mask:
     """Return a mask of contacts (K,) before which the robot cut in.
 
     A person who is faster than the robot and keeps walking straight on would have passed beside it,
@@ -23,14 +23,18 @@ def cut_in(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed
     it is judged by its braking.
 
     Args:
-        run: the run of ``found``.
+        run: the run of ``contacts``.
         jump_speed: speed that detects teleports if none were recorded, m/s.
     """
-    return np.array([_cuts(run, found, k, rule, jump_speed) for k in range(len(found))], dtype=bool)
+    return np.array(
+        [_cuts(run, contacts, k, rule, jump_speed) for k in range(len(contacts))], dtype=bool
+    )
 
 
-def _cuts(run: Trajectories, found: PersonContacts, k: int, rule: FaultRule, jump: float) -> bool:
-    agent, last = int(found.agent[k]), int(found.sample[k])
+def _cuts(
+    run: Trajectories, contacts: PersonContacts, k: int, rule: FaultRule, jump: float
+) -> bool:
+    agent, last = int(contacts.agent[k]), int(contacts.sample[k])
     if agent < 0:
         return False
     robot, crowd = robot_of(run), people(run)
@@ -45,7 +49,9 @@ def _cuts(run: Trajectories, found: PersonContacts, k: int, rule: FaultRule, jum
     ahead = rx[last] * ux + ry[last] * uy
     if not (along > -rule.speed and difference > rule.speed and ahead > 0.0):
         return False
-    first = int(np.searchsorted(run.t, found.time[k] - rule.reaction - difference / rule.braking))
+    first = int(
+        np.searchsorted(run.t, contacts.time[k] - rule.reaction - difference / rule.braking)
+    )
     since = np.flatnonzero(np.isfinite(rx[first : last + 1]) & np.isfinite(vx[first : last + 1]))
     if not len(since):
         return False

@@ -12,7 +12,9 @@ from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array, Indices, Mask
 
 
-def pushed_on(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed: float) -> Mask:
+def pushed_on(
+    run: Trajectories, contacts: PersonContacts, rule: FaultRule, jump_speed: float
+) -> Mask:
     """Return a mask of contacts (K,) in which the robot keeps pushing the person.
 
     The robot has the reaction time, then it must slow down from its speed at the onset; for a
@@ -22,40 +24,42 @@ def pushed_on(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_sp
     one that pushes.
 
     Args:
-        run: the run of ``found``.
+        run: the run of ``contacts``.
         jump_speed: speed that detects teleports if none were recorded, m/s.
     """
-    lasting = [_during(run, found, k) for k in range(len(found))]
-    pushes = np.zeros(len(found), dtype=bool)
+    lasting = [_during(run, contacts, k) for k in range(len(contacts))]
+    pushes = np.zeros(len(contacts), dtype=bool)
     for k, sample in enumerate(lasting):
-        since = run.t[sample] - found.time[k]
+        since = run.t[sample] - contacts.time[k]
         if not (since > rule.reaction).any():
             continue
-        there = touch_point(run, sample, np.full(len(sample), found.agent[k]), jump_speed)
-        others = [i for i in range(len(found)) if found.agent[i] not in (-1, found.agent[k])]
-        beside = [(int(found.agent[i]), lasting[i]) for i in others]
-        presses = _presses(run, there, sample, int(found.agent[k]), rule, jump_speed)
+        there = touch_point(run, sample, np.full(len(sample), contacts.agent[k]), jump_speed)
+        others = [
+            i for i in range(len(contacts)) if contacts.agent[i] not in (-1, contacts.agent[k])
+        ]
+        beside = [(int(contacts.agent[i]), lasting[i]) for i in others]
+        presses = _presses(run, there, sample, int(contacts.agent[k]), rule, jump_speed)
         presses &= ~_shoved(run, there, sample, beside, jump_speed)
-        speed = _speed_before(run, found, k, jump_speed)
+        speed = _speed_before(run, contacts, k, jump_speed)
         pushes[k] = _too_much(there.closing, since, _lengths(run.t)[sample], presses, speed, rule)
     return pushes
 
 
-def _during(run: Trajectories, found: PersonContacts, k: int) -> Indices:
+def _during(run: Trajectories, contacts: PersonContacts, k: int) -> Indices:
     """Return the samples within a contact; none if the person is unknown."""
-    if found.agent[k] < 0:
+    if contacts.agent[k] < 0:
         return np.empty(0, dtype=np.intp)
-    first = int(np.searchsorted(run.t, found.time[k] - 1e-9))
-    last = int(np.searchsorted(run.t, found.end[k] + 1e-9, side="right"))
+    first = int(np.searchsorted(run.t, contacts.time[k] - 1e-9))
+    last = int(np.searchsorted(run.t, contacts.end[k] + 1e-9, side="right"))
     return np.arange(first, last)
 
 
-def _speed_before(run: Trajectories, found: PersonContacts, k: int, jump_speed: float) -> float:
+def _speed_before(run: Trajectories, contacts: PersonContacts, k: int, jump_speed: float) -> float:
     """Return the speed of the touching point before a contact, m/s; 0 if there is no before."""
-    if found.time[k] <= run.t[0] + 1e-9:
+    if contacts.time[k] <= run.t[0] + 1e-9:
         return 0.0
     one = slice(k, k + 1)
-    return float(touch_point(run, found.sample[one], found.agent[one], jump_speed).speed[0])
+    return float(touch_point(run, contacts.sample[one], contacts.agent[one], jump_speed).speed[0])
 
 
 def _too_much(

@@ -12,7 +12,7 @@ from crowdbot.core.types.arrays import Array, Indices
 
 
 def regained(
-    run: Trajectories, found: Evasion, agents: Indices, within: float, jump_speed: float
+    run: Trajectories, evasion: Evasion, agents: Indices, within: float, jump_speed: float
 ) -> Array:
     """Return by how much accelerations away from the robot only regain speed (N-1, M), m/s².
 
@@ -21,26 +21,26 @@ def regained(
 
     Args:
         run: with a robot.
-        found: accelerations of the same run.
+        evasion: accelerations of the same run.
         agents: (K,) columns of the people who are asked for; 0 elsewhere.
         within: this long after the touch, s.
         jump_speed: a faster step is a teleport where none are recorded, m/s.
     """
-    selected = np.zeros(found.near.shape, dtype=bool)
+    selected = np.zeros(evasion.near.shape, dtype=bool)
     selected[:, agents] = True
     struck = touched_by_others(run, selected)
     vx, vy = people_velocities(run, jump_speed)
-    back = np.zeros(found.away.shape)
+    back = np.zeros(evasion.away.shape)
     for m in agents.tolist():
         before, until = np.full(2, np.nan), -np.inf
-        for k in range(len(found.dt)):
+        for k in range(len(evasion.dt)):
             if struck[k, m]:
                 if run.t[k] > until or np.isnan(before).any():
                     at = max(0, k - 1)
                     before = np.array([vx[at, m], vy[at, m]])
                 until = run.t[k + 1] + within
-            elif run.t[k] < until and found.away[k, m] > 0.0:
-                nx, ny = found.nx[k, m], found.ny[k, m]
+            elif run.t[k] < until and evasion.away[k, m] > 0.0:
+                nx, ny = evasion.nx[k, m], evasion.ny[k, m]
                 missing = (before[0] - vx[k, m]) * nx + (before[1] - vy[k, m]) * ny
-                back[k, m] = min(found.away[k, m], max(0.0, missing) / found.dt[k])
+                back[k, m] = min(evasion.away[k, m], max(0.0, missing) / evasion.dt[k])
     return back

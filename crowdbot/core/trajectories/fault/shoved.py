@@ -13,7 +13,7 @@ from crowdbot.core.types.arrays import Mask
 
 
 def shoved_into(
-    run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed: float
+    run: Trajectories, contacts: PersonContacts, rule: FaultRule, jump_speed: float
 ) -> Mask:
     """Return a mask of contacts (K,) into which another person pushes the robot.
 
@@ -22,22 +22,22 @@ def shoved_into(
     that drove before is not excused, nor is one that leaves the person behind it.
 
     Args:
-        run: the run of ``found``.
-        found: its contacts.
+        run: the run of ``contacts``.
+        contacts: its contacts.
         rule: the fault rule.
         jump_speed: speed that detects teleports if none were recorded, m/s.
     """
-    shoved = np.zeros(len(found), dtype=bool)
+    shoved = np.zeros(len(contacts), dtype=bool)
     speed = np.hypot(*robot_velocities(run, jump_speed))
-    for k in np.flatnonzero(found.agent >= 0):
-        others = (found.agent >= 0) & (found.agent != found.agent[k])
-        others &= (found.time < found.time[k]) & (found.end >= found.time[k])
-        others &= speed[found.sample] <= rule.speed
+    for k in np.flatnonzero(contacts.agent >= 0):
+        others = (contacts.agent >= 0) & (contacts.agent != contacts.agent[k])
+        others &= (contacts.time < contacts.time[k]) & (contacts.end >= contacts.time[k])
+        others &= speed[contacts.sample] <= rule.speed
         if others.any():
-            at = found.sample[k : k + 1]
-            there = touch_point(run, at, found.agent[k : k + 1], jump_speed)
+            at = contacts.sample[k : k + 1]
+            there = touch_point(run, at, contacts.agent[k : k + 1], jump_speed)
             pushes = [_pushes(run, int(a), there, int(at[0]), rule, jump_speed)
-                      for a in found.agent[others]]  # fmt: skip
+                      for a in contacts.agent[others]]  # fmt: skip
             shoved[k] = any(pushes)
     return shoved
 

@@ -87,9 +87,9 @@ def _largest_drop(t: Array, speed: Array) -> float:
     return float(np.where(later, speed[:, np.newaxis] - speed[np.newaxis], 0.0).max())
 
 
-def _from_behind(run: Trajectories, found: PersonContacts, k: int) -> bool:
+def _from_behind(run: Trajectories, contacts: PersonContacts, k: int) -> bool:
     """Return True if a faster person came from behind the robot's motion."""
-    agent, n = int(found.agent[k]), int(found.sample[k])
+    agent, n = int(contacts.agent[k]), int(contacts.sample[k])
     if agent < 0:
         return False
     robot, crowd = robot_of(run), people(run)

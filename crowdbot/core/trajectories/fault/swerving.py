@@ -23,7 +23,9 @@ from crowdbot.core.types.arrays import Array, Mask
 _BEFORE = 2.0
 
 
-def swerved(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_speed: float) -> Mask:
+def swerved(
+    run: Trajectories, contacts: PersonContacts, rule: FaultRule, jump_speed: float
+) -> Mask:
     """Return a mask of contacts (K,) that the robot caused by a turn or a start.
 
     The touching point moves towards the person. Had the robot kept its velocity of two reaction
@@ -32,20 +34,20 @@ def swerved(run: Trajectories, found: PersonContacts, rule: FaultRule, jump_spee
     that slows down is not counted.
 
     Args:
-        run: the run of ``found``.
+        run: the run of ``contacts``.
         jump_speed: speed that detects teleports if none were recorded, m/s.
     """
-    moves = (found.closing > rule.speed) & (found.agent >= 0)
-    made = [bool(m) and _came_over(run, found, k, rule, jump_speed) for k, m in enumerate(moves)]
+    moves = (contacts.closing > rule.speed) & (contacts.agent >= 0)
+    made = [bool(m) and _came_over(run, contacts, k, rule, jump_speed) for k, m in enumerate(moves)]
     return np.array(made, dtype=bool)
 
 
 def _came_over(
-    run: Trajectories, found: PersonContacts, k: int, rule: FaultRule, jump: float
+    run: Trajectories, contacts: PersonContacts, k: int, rule: FaultRule, jump: float
 ) -> bool:
-    agent, last = int(found.agent[k]), int(found.sample[k])
+    agent, last = int(contacts.agent[k]), int(contacts.sample[k])
     robot, crowd, pair = robot_of(run), people(run), encounter(run, jump)
-    first = int(np.searchsorted(run.t, found.time[k] - _BEFORE * rule.reaction - 1e-9))
+    first = int(np.searchsorted(run.t, contacts.time[k] - _BEFORE * rule.reaction - 1e-9))
     span = np.arange(first, min(last + 2, len(run.t)))
     span = span[np.isfinite(pair.gap[span, agent])]
     if not len(span):

@@ -119,13 +119,13 @@ def _placeholders(run: Trajectories) -> Iterator[str]:
     with np.errstate(invalid="ignore"):
         steps = np.hypot(np.diff(x, axis=0), np.diff(y, axis=0))
         leaps = (nowhere[1:] != nowhere[:-1]) & (steps > PERSON_SPEED * np.diff(run.t)[:, None])
-    whose = np.flatnonzero((leaps & (steps > _LEAP)).any(axis=0))
-    if len(whose):
-        ids = ", ".join(str(i) for i in run.agents.id[whose[:5]])
-        values = np.unique(x[:, whose][nowhere[:, whose]])
+    leaping = np.flatnonzero((leaps & (steps > _LEAP)).any(axis=0))
+    if len(leaping):
+        ids = ", ".join(str(i) for i in run.agents.id[leaping[:5]])
+        values = np.unique(x[:, leaping][nowhere[:, leaping]])
         at = " or ".join(f"({value:g}, {value:g})" for value in values[:3])
         yield (
-            f"people: in {np.count_nonzero(nowhere[:, whose])} samples {len(whose)} of them "
+            f"people: in {np.count_nonzero(nowhere[:, leaping])} samples {len(leaping)} of them "
             f"({ids}) stand at exactly {at}, and suddenly elsewhere: leave cells without a place "
             "empty"
         )

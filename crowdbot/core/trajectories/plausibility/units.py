@@ -34,16 +34,16 @@ def bodies(run: Any) -> Iterator[str]:
         yield from _weight("people: median mass", np.median(people.mass), _PERSON_MASS)
 
 
-def _size(what: str, radius: float, most: float) -> Iterator[str]:
+def _size(name: str, radius: float, most: float) -> Iterator[str]:
     if radius > most:
         unit = "millimetres" if radius > 100.0 * most else "centimetres"
-        unit = "millimetres or centimetres" if what == "robot_radius" else unit
-        yield f"{what} {radius:g} m: {unit}? Lengths are in metres"
+        unit = "millimetres or centimetres" if name == "robot_radius" else unit
+        yield f"{name} {radius:g} m: {unit}? Lengths are in metres"
 
 
-def _weight(what: str, mass: float, most: float) -> Iterator[str]:
+def _weight(name: str, mass: float, most: float) -> Iterator[str]:
     if mass > most:
-        yield f"{what} {mass:g} kg: grams? Masses are in kilograms"
+        yield f"{name} {mass:g} kg: grams? Masses are in kilograms"
 
 
 def creeping(t: Array, name: str, x: Array, y: Array) -> Iterator[str]:

@@ -189,13 +189,13 @@ def _excess(
     ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
 ) -> float:
     most, worst = 2.0 * agent.max_speed, 0.0
-    wanted = math.hypot(ux - agent.pvx, uy - agent.pvy)
-    base = min(wanted, most)
+    deviation = math.hypot(ux - agent.pvx, uy - agent.pvy)
+    base = min(deviation, most)
     for k in range(int(work[0])):
         worst = max(worst, violation(work, k, ux, uy))
         if worst > 0.0 and most + worst - base > budget:
             break
-    return float(most + worst - base if worst > 0.0 else wanted - base)
+    return float(most + worst - base if worst > 0.0 else deviation - base)
 
 
 @declared_kernel(OPTIMUM)

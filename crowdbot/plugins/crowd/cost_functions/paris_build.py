@@ -225,8 +225,8 @@ def _rounding(ux: float, uy: float, agent: AgentRecord) -> float:
     )
     preferred = float32(agent.preferred)
     x, y, px, py = float32(ex), float32(ey), float32(gx) * preferred, float32(gy) * preferred
-    size, wanted = float32(math.sqrt(x * x + y * y)), float32(math.sqrt(px * px + py * py))
-    single = float32(float32(1.0) - float32((x * px + y * py) / (size * wanted)))
+    size, preferred_size = float32(math.sqrt(x * x + y * y)), float32(math.sqrt(px * px + py * py))
+    single = float32(float32(1.0) - float32((x * px + y * py) / (size * preferred_size)))
     exact = (ux * agent.pvx + uy * agent.pvy) / (math.hypot(ux, uy) * agent.preferred)
     return float(float(single) - (1.0 - exact))
 

@@ -71,10 +71,10 @@ def _people(
     parity = agent.parity != 0.0
     xx, xy = -near[j].rx, -near[j].ry
     distance = math.sqrt(near[j].d2)
-    stride, wanted = math.hypot(near[j].nvx, near[j].nvy), math.hypot(near[j].npx, near[j].npy)
+    stride, preferred = math.hypot(near[j].nvx, near[j].nvy), math.hypot(near[j].npx, near[j].npy)
     stride *= own.dt
-    yx = near[j].npx / wanted * stride if wanted > 0.0 else 0.0
-    yy = near[j].npy / wanted * stride if wanted > 0.0 else 0.0
+    yx = near[j].npx / preferred * stride if preferred > 0.0 else 0.0
+    yy = near[j].npy / preferred * stride if preferred > 0.0 else 0.0
     if own.relative != 0.0:
         yx = (near[j].nvx - agent.vx) * own.dt
         yy = (near[j].nvy - agent.vy) * own.dt
@@ -83,7 +83,7 @@ def _people(
     if distance <= near[j].reach or moved == 0.0:
         return 0.0, 0.0
     around = distance + moved
-    counted = stride if parity or wanted > 0.0 or own.relative != 0.0 else 0.0
+    counted = stride if parity or preferred > 0.0 or own.relative != 0.0 else 0.0
     minor2 = 0.25 * (around * around - counted * counted)
     if minor2 <= 0.0 or math.sqrt(minor2) < _CLOSEST:
         return 0.0, 0.0

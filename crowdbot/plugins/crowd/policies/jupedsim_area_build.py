@@ -32,11 +32,11 @@ class WalkableArea:
 
     def nearest(self, point: Array) -> tuple[float, float]:
         """Return the point itself, or the nearest one of the area."""
-        wanted = self.shapely.Point(*point)
-        if not self.shape.contains(wanted):
+        here = self.shapely.Point(*point)
+        if not self.shape.contains(here):
             inner = self.shape.buffer(-SLIT)
-            wanted = self.shapely.shortest_line(inner, wanted).interpolate(0.0)
-        return (float(wanted.x), float(wanted.y))
+            here = self.shapely.shortest_line(inner, here).interpolate(0.0)
+        return (float(here.x), float(here.y))
 
 
 class WalkableAreas:

@@ -59,7 +59,7 @@ class JuPedSim:
         Raises:
             PluginError: the library refuses the situation.
         """
-        wanted, goal = _preferred(view)
+        preferred, goal = _preferred(view)
         others = view.others(self._spec.sight)
         people = np.flatnonzero(view.present)
         people = people[np.argsort(view.agents.id[people])]
@@ -67,13 +67,13 @@ class JuPedSim:
         ahead = others[:, :2] + others[:, 2:4] * max(dt, 1.0)
         at = np.concatenate([view.position[people], others[:, :2]])
         aim = np.concatenate([goal[people], ahead])
-        speed = np.hypot(*np.concatenate([wanted[people], others[:, 2:4]]).T)
+        speed = np.hypot(*np.concatenate([preferred[people], others[:, 2:4]]).T)
         radius = np.concatenate([view.agents.avoided_radius[people], others[:, 4]])
         try:
             moved = self._walk(at, aim, speed, radius, view.walls, dt)[: len(people)]
         except RuntimeError as error:  # the library raises this for any invalid input
             raise PluginError(f"jupedsim at t = {view.t:g} s: {error}") from error
-        answer = wanted.copy()
+        answer = preferred.copy()
         done = np.isfinite(moved[:, 0])
         answer[people[done]] = moved[done] / dt
         return answer

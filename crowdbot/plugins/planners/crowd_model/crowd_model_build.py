@@ -44,11 +44,11 @@ class CrowdModelPlanner(VelocityPlanner):
         assert self.limits is not None
         here, own = np.array([scene.pose.x, scene.pose.y]), np.array(velocity_of(scene))
         people = people_near(scene, self.limits.v_max, _HORIZON, _PEOPLE)
-        wanted = self._decided(people, here, own, wish)
-        speed, top = float(np.hypot(*wanted)), float(np.hypot(*wish))
-        wanted *= min(1.0, top / max(speed, 1e-9))
-        obs.log("crowd_model/change", float(np.hypot(*(wanted - wish))))
-        return self._clear_of_walls(scene.points, here, own, (wanted[0], wanted[1]))
+        desired = self._decided(people, here, own, wish)
+        speed, top = float(np.hypot(*desired)), float(np.hypot(*wish))
+        desired *= min(1.0, top / max(speed, 1e-9))
+        obs.log("crowd_model/change", float(np.hypot(*(desired - wish))))
+        return self._clear_of_walls(scene.points, here, own, (desired[0], desired[1]))
 
     def _decided(self, people: Array, here: Array, own: Array, wish: Array) -> Array:
         """Return the velocity (2,) of person 0 after one decision, m/s."""
@@ -64,15 +64,15 @@ class CrowdModelPlanner(VelocityPlanner):
         return np.asarray(own + _STEP * pull[0])
 
     def _clear_of_walls(
-        self, points: Array, here: Array, own: Array, wanted: tuple[float, float]
+        self, points: Array, here: Array, own: Array, desired: tuple[float, float]
     ) -> tuple[float, float]:
         """Return the velocity nearest to a wanted one that touches nothing that stands, m/s."""
         hard, count = half_planes(
             points, _NOBODY, (here[0], here[1]), (own[0], own[1]), (_WALLS, _WALLS, 1.0),
             self.radius, self._lines,
         )  # fmt: skip
-        top = float(np.hypot(*wanted))
-        return best_velocity(self._lines, count, hard, top, wanted, self._scratch)
+        top = float(np.hypot(*desired))
+        return best_velocity(self._lines, count, hard, top, desired, self._scratch)
 
 
 build = CrowdModelPlanner

@@ -103,10 +103,10 @@ class CrowdForecast:
             step: length of a step, s.
         """
         self._check(t, numbers, people)
-        wanted = self._settle(t, numbers, people)
+        velocities = self._settle(t, numbers, people)
         times = step * np.arange(1, len(path))[:, np.newaxis, np.newaxis]
         kept = people[:, :2] + times * people[:, 2:4]
-        crowd = self._roll(people, wanted, path, radius, step, kept) if len(numbers) else kept
+        crowd = self._roll(people, velocities, path, radius, step, kept) if len(numbers) else kept
         at = round(_CHECKED / step) - 1
         if len(numbers) and at < len(kept):
             self._checked.append(
@@ -142,7 +142,7 @@ class CrowdForecast:
         return found
 
     def _roll(
-        self, people: Array, wanted: Array, path: Array, radius: float | None, step: float,
+        self, people: Array, desired: Array, path: Array, radius: float | None, step: float,
         kept: Array,
     ) -> Array:  # fmt: skip
         """Return where people will be who decide as the crowd does, (T, N, 2), m.
@@ -150,7 +150,7 @@ class CrowdForecast:
         Those who stand, and those far away, keep their velocity, as in ``kept``.
         """
         assert self._crowd is not None
-        taken, seats, slips = seated(people, wanted, path[0], STANDS, _MOST, self._speeds)
+        taken, seats, slips = seated(people, desired, path[0], STANDS, _MOST, self._speeds)
         robots = np.hstack([path[:-1], np.diff(path, axis=0) / step])[::STEPS][:_DECISIONS]
         walked = self._crowd.walk(*taken, robots, radius, STEPS * step)
         out = kept.copy()

@@ -16,13 +16,13 @@ _FAR = 20.0
 
 @array_kernel
 def seated(
-    people: Array, wanted: Array, here: Array, slowest: float, most: int, speeds: Array
+    people: Array, desired: Array, here: Array, slowest: float, most: int, speeds: Array
 ) -> tuple[tuple[Array, Array, Array, Mask], Indices, Array]:
     """Give those who walk, the nearest first, the free seats of the nearest speeds.
 
     Args:
         people: (N, 5) x, y, vx, vy, radius; m, m/s.
-        wanted: (N, 2) velocity, m/s; who wants less than ``slowest`` stands.
+        desired: (N, 2) velocity, m/s; who wants less than ``slowest`` stands.
         here: (2,) place of the robot, m.
         slowest: m/s.
         most: how many people take part.
@@ -39,20 +39,20 @@ def seated(
     for i in range(count):
         x, y = people[i, 0] - here[0], people[i, 1] - here[1]
         away[i] = x * x + y * y
-        if math.hypot(wanted[i, 0], wanted[i, 1]) < slowest:
+        if math.hypot(desired[i, 0], desired[i, 1]) < slowest:
             away[i] = math.inf
     for _ in range(min(most, count)):
         i = int(np.argmin(away))
         if away[i] == math.inf:
             break
         away[i] = math.inf
-        speed = math.hypot(wanted[i, 0], wanted[i, 1])
+        speed = math.hypot(desired[i, 0], desired[i, 1])
         seat = _free_seat(speed, speeds, present)
         seats[i], present[seat] = seat, True
         for c in range(2):
             place[seat, c], velocity[seat, c] = people[i, c], people[i, 2 + c]
-            goal[seat, c] = people[i, c] + _FAR * wanted[i, c] / speed
-            slips[i, c] = (1.0 - speeds[seat] / speed) * wanted[i, c]
+            goal[seat, c] = people[i, c] + _FAR * desired[i, c] / speed
+            slips[i, c] = (1.0 - speeds[seat] / speed) * desired[i, c]
     return (place, velocity, goal, present), seats, slips
 
 
@@ -101,13 +101,13 @@ def leave_seats(
 
 @kernel
 def settle(
-    numbers: Indices, people: Array, before: Indices, wanted: Array, fresh: float, out: Array
+    numbers: Indices, people: Array, before: Indices, desired: Array, fresh: float, out: Array
 ) -> None:
     """Write the wanted velocities (N, 2): what was wanted before moves towards the present, m/s.
 
     Args:
         numbers, people: (N,), (N, 5) as of `CrowdForecast.predict`.
-        before, wanted: (M,), (M, 2) numbers of people and what they wanted.
+        before, desired: (M,), (M, 2) numbers of people and what they wanted.
         fresh: share of the present, 0 to 1.
     """
     for i in range(numbers.shape[0]):
@@ -115,7 +115,7 @@ def settle(
         for j in range(before.shape[0]):
             if before[j] == numbers[i]:
                 for c in range(2):
-                    out[i, c] = wanted[j, c] + fresh * (people[i, 2 + c] - wanted[j, c])
+                    out[i, c] = desired[j, c] + fresh * (people[i, 2 + c] - desired[j, c])
                 break
 
 

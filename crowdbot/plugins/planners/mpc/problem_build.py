@@ -120,13 +120,13 @@ def _residuals(casadi: Any, spec: MpcSpec, plan: Any, given: Any, dt: float) -> 
     for k in range(spec.stages):
         now = [plan[k, a] for a in range(plan.shape[1])]
         px, py, yaw = _moved(casadi, (px, py, yaw), now, dt)
-        wanted = casadi.fmin(top * dt * (k + 1), away)
+        reachable = casadi.fmin(top * dt * (k + 1), away)
         on, off = (px - x) * ux + (py - y) * uy, (py - y) * ux - (px - x) * uy
-        rows.append(np.sqrt(spec.progress) / dt * ((wanted - before) - (on - along)))
+        rows.append(np.sqrt(spec.progress) / dt * ((reachable - before) - (on - along)))
         rows.append(np.sqrt(spec.contour) * off)
         rows.append(np.sqrt(spec.heading) * casadi.sin(0.5 * (yaw - bearing)))
         rows += [np.sqrt(spec.smoothness) * (a - b) for a, b in zip(now, last, strict=False)]
-        before, along, last = wanted, on, now
+        before, along, last = reachable, on, now
         for n in range(spec.neighbours + spec.planes):
             row = [given[slot + c] for c in range(COLUMNS)]
             slot += COLUMNS

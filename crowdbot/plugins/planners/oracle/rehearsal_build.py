@@ -95,12 +95,12 @@ class Rehearsal:
     def _gaps(self, poses: Array, people: Array, radius: Array) -> Array:
         """Return the gaps (T, N) between robot and people after each step, m."""
         c, s = np.cos(poses[1:, 2]), np.sin(poses[1:, 2])
-        found = np.full(people.shape[:2], math.inf)
+        gaps = np.full(people.shape[:2], math.inf)
         for x, y, own in self._robot.tolist():
             dx = people[:, :, 0] - (poses[1:, 0] + c * x - s * y)[:, np.newaxis]
             dy = people[:, :, 1] - (poses[1:, 1] + s * x + c * y)[:, np.newaxis]
-            found = np.minimum(found, np.hypot(dx, dy) - own - radius)
-        return found
+            gaps = np.minimum(gaps, np.hypot(dx, dy) - own - radius)
+        return gaps
 
     def _touched(self, poses: Array, people: Array, radius: Array, *, stands: bool) -> float:
         """Return the time of the first touch, s; infinite without one.

@@ -37,20 +37,20 @@ class WholeForecast(CrowdForecast):
         return len(now), kept, crowd
 
     def _roll(
-        self, people: Array, wanted: Array, path: Array, radius: float | None, step: float,
+        self, people: Array, desired: Array, path: Array, radius: float | None, step: float,
         kept: Array,
     ) -> Array:  # fmt: skip
         assert self._crowd is not None
-        speed = np.hypot(wanted[:, 0], wanted[:, 1])
+        speed = np.hypot(desired[:, 0], desired[:, 1])
         seats, taken = self._seats(speed)
         size = len(self._speeds)
         position, velocity = np.full((size, 2), 1e6), np.zeros((size, 2))
         goal, present = np.full((size, 2), 1e6 + 1.0), np.zeros(size, np.bool_)
         position[taken], velocity[taken] = people[seats, :2], people[seats, 2:4]
-        goal[taken] = people[seats, :2] + _FAR * wanted[seats] / speed[seats, np.newaxis]
+        goal[taken] = people[seats, :2] + _FAR * desired[seats] / speed[seats, np.newaxis]
         present[taken] = True
         # The seats' speeds are a few per cent off; so is the way.
-        off = (1.0 - self._speeds[taken] / speed[seats])[:, np.newaxis] * wanted[seats]
+        off = (1.0 - self._speeds[taken] / speed[seats])[:, np.newaxis] * desired[seats]
         robots = np.hstack([path[:-1], np.diff(path, axis=0) / step])[::STEPS]
         dt, steps = STEPS * step, np.arange(len(kept))
         places, speeds, pulls = self._crowd.walk(

@@ -87,21 +87,21 @@ def _second(
 
 @kernel
 def _stepped(
-    p: Array, state: tuple[float, float, float, float], wanted: tuple[float, float, float]
+    p: Array, state: tuple[float, float, float, float], target: tuple[float, float, float]
 ) -> tuple[float, float, float, float, float, float]:
     """Return the way in x and y (m), then yaw, v, w, vy, after a step within acceleration limits.
 
     Args:
         p: parameters.
         state: yaw, v, w, vy before.
-        wanted: v, w, vy.
+        target: v, w, vy.
     """
     yaw, v, w, vy = state
-    dv, dvy = wanted[0] - v, wanted[2] - vy
+    dv, dvy = target[0] - v, target[2] - vy
     most, change = p[A_MAX] * STEP, math.sqrt(dv * dv + dvy * dvy)
     if change > most:
         dv, dvy = dv * most / change, dvy * most / change
-    w_next = _slewed(w, wanted[1], p[ALPHA_MAX] * STEP)
+    w_next = _slewed(w, target[1], p[ALPHA_MAX] * STEP)
     middle = yaw + (w + w_next) / 4.0 * STEP
     c, s = math.cos(middle), math.sin(middle)
     ahead, left = (v + 0.5 * dv) * STEP, (vy + 0.5 * dvy) * STEP
@@ -150,11 +150,11 @@ def roll(
         off = math.atan2(gy, gx) - yaw
         if t > p[TURN_TIME] + 0.5 * STEP:
             top = min(pace * p[V_MAX], brake)
-            wanted = _second(p, first, off, aside * max(0.0, 1.0 - t / p[HORIZON]), top)
+            target = _second(p, first, off, aside * max(0.0, 1.0 - t / p[HORIZON]), top)
         else:
-            wanted = min(first[0], brake), first[1], first[2]
+            target = min(first[0], brake), first[1], first[2]
             beside = abs(wrapped(off))
-        dx, dy, yaw, v, w, vy = _stepped(p, (yaw, v, w, vy), wanted)
+        dx, dy, yaw, v, w, vy = _stepped(p, (yaw, v, w, vy), target)
         x += dx
         y += dy
         going = dx / STEP, dy / STEP

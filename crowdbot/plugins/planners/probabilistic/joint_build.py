@@ -226,14 +226,16 @@ def log_densities(
         p: parameters.
     """
     out = np.empty(candidates.shape[0])
-    wanted, planned = way(twist, user, p), way(twist, planner, p)
-    discs = np.empty((wanted.shape[0], robot.shape[0], 4))
+    user_way, planned = way(twist, user, p), way(twist, planner, p)
+    discs = np.empty((user_way.shape[0], robot.shape[0], 4))
     agree = p[AGREEABILITY] * p[AGREEABILITY]
     for k in range(candidates.shape[0]):
         total, own = 0.0, way(twist, candidates[k], p)
         for i in range(own.shape[0]):
             t = (i + 1) * STEP
-            total -= 0.5 * _apart(own[i], wanted[i], p[FRONT]) / (agree + (p[USER_SPREAD] * t) ** 2)
+            total -= (
+                0.5 * _apart(own[i], user_way[i], p[FRONT]) / (agree + (p[USER_SPREAD] * t) ** 2)
+            )
             total -= 0.5 * _apart(own[i], planned[i], p[FRONT]) / (p[ROBOT_SPREAD] * t) ** 2
         _placed(robot, own, discs)
         total += _still(bodies, discs, p)

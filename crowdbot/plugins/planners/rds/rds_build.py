@@ -74,8 +74,8 @@ class Rds(VelocityPlanner):
         if self.limits.vy_max > 0.0:
             along, aside = self._nearest(obs, scene, (user.v, user.vy), self.limits.vy_max)
             return Command(along, user.w if along or aside else 0.0, aside)
-        wanted = user.v, user.w * reach
-        along, aside = self._nearest(obs, scene, wanted, self.limits.w_max * reach)
+        desired = user.v, user.w * reach
+        along, aside = self._nearest(obs, scene, desired, self.limits.w_max * reach)
         return Command(along, aside / reach)
 
     def forget(self) -> None:
@@ -95,21 +95,21 @@ class Rds(VelocityPlanner):
         top = float(np.hypot(*wish))
         error = math.remainder(math.atan2(wish[1], wish[0]) - scene.pose.yaw, 2.0 * math.pi)
         if limits.vy_max > 0.0:
-            wanted = top * math.cos(error), top * math.sin(error)
+            desired = top * math.cos(error), top * math.sin(error)
             aside = limits.vy_max
         else:
             turn = max(-limits.w_max, min(limits.w_max, _GAIN * error))
-            wanted, aside = (top * max(0.0, math.cos(error)), turn * reach), limits.w_max * reach
-        return self._nearest(obs, scene, wanted, aside)
+            desired, aside = (top * max(0.0, math.cos(error)), turn * reach), limits.w_max * reach
+        return self._nearest(obs, scene, desired, aside)
 
     def _nearest(
-        self, obs: Observation, scene: PlannerScene, wanted: tuple[float, float], aside: float
+        self, obs: Observation, scene: PlannerScene, desired: tuple[float, float], aside: float
     ) -> tuple[float, float]:
         """Return the velocity of the reference point nearest to the wanted one, m/s."""
         assert self.limits is not None
         bounds = _bounds(min(0.0, self.limits.v_min), self.limits.v_max, aside)
-        chosen = self._choose(_things(scene), scene.twist, wanted, bounds)
-        obs.log("rds/change", math.hypot(chosen[0] - wanted[0], chosen[1] - wanted[1]))
+        chosen = self._choose(_things(scene), scene.twist, desired, bounds)
+        obs.log("rds/change", math.hypot(chosen[0] - desired[0], chosen[1] - desired[1]))
         return chosen
 
     def drive(self, obs: Observation, scene: PlannerScene, wish: Array, error: float) -> Command:
@@ -127,7 +127,7 @@ class Rds(VelocityPlanner):
         self,
         things: Array,
         twist: tuple[float, float, float],
-        wanted: tuple[float, float],
+        desired: tuple[float, float],
         bounds: Array,
     ) -> tuple[float, float]:
         spec = self._spec
@@ -140,7 +140,7 @@ class Rds(VelocityPlanner):
             self._lines,
         )  # fmt: skip
         fastest = 10.0  # the bounds limit more
-        found = best_velocity(self._lines, count, 0, fastest, wanted, self._scratch)
+        found = best_velocity(self._lines, count, 0, fastest, desired, self._scratch)
         return found if allowed(self._lines, count, found) else (0.0, 0.0)
 
 

@@ -50,19 +50,19 @@ class SafetyStop:
 
     def step(self, obs: Observation) -> Command:
         """Return the user's command, as far as it is safe."""
-        wanted = self._user.command(obs)
+        requested = self._user.command(obs)
         bodies = bodies_in_base(self._surroundings.see(obs))
         other = None if self._half is None else self._half.step(obs)
-        command = self._braked(wanted, bodies)
-        obs.log("safety_stop/intervenes", float(command != wanted))
-        if other is None or command == wanted:
+        command = self._braked(requested, bodies)
+        obs.log("safety_stop/intervenes", float(command != requested))
+        if other is None or command == requested:
             return command
         return self._braked(other, bodies)
 
-    def _braked(self, wanted: Command, bodies: Array) -> Command:
+    def _braked(self, command: Command, bodies: Array) -> Command:
         """Return a command slowed until it is safe: the speed first, then the turn."""
         need = min(self._spec.margin, self._gap(Command(0.0, 0.0), bodies) - _SLACK)
-        v, w, vy = wanted
+        v, w, vy = command
         for share in _SHARES:
             slower = Command(share * v, w, share * vy)
             if self._gap(slower, bodies) >= need:

@@ -43,12 +43,12 @@ class SarlNetwork:
         self._each, self._features, self._attention, self._value = one, two, attention, three
         # attention sees a person's code alone, or beside the mean of all
         self._with_mean = attention.width_in == 2 * one.width_out
-        wanted = one.width_out * (2 if self._with_mean else 1)
+        width = one.width_out * (2 if self._with_mean else 1)
         check_widths(
             where,
             ("mlp1", one.width_in, OF_PAIR),
             ("mlp2", two.width_in, one.width_out),
-            ("attention", attention.width_in, wanted),
+            ("attention", attention.width_in, width),
             ("mlp3", three.width_in, OF_ROBOT + two.width_out),
         )
 

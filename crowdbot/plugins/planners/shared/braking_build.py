@@ -72,12 +72,12 @@ def can_brake(
     need = min(touch, gap_at(world, x, y, yaw, 0.0) - _SLACK)
     t = 0.0
     while t < held or abs(v) + abs(vy) > 1e-6 or abs(w) > 1e-6:
-        wanted = command if t < held - 1e-9 else (0.0, 0.0, 0.0)
-        dv, dvy = wanted[0] - v, wanted[2] - vy
+        target = command if t < held - 1e-9 else (0.0, 0.0, 0.0)
+        dv, dvy = target[0] - v, target[2] - vy
         most, change = slew[0] * _FINE, math.sqrt(dv * dv + dvy * dvy)
         share = min(1.0, most / max(change, 1e-12))
         v, vy = v + share * dv, vy + share * dvy
-        w += min(max(wanted[1] - w, -slew[1] * _FINE), slew[1] * _FINE)
+        w += min(max(target[1] - w, -slew[1] * _FINE), slew[1] * _FINE)
         yaw += w * _FINE
         c, s = math.cos(yaw), math.sin(yaw)
         x += (v * c - vy * s) * _FINE

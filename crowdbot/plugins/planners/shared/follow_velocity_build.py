@@ -12,19 +12,21 @@ _GAIN, _TURN = 2.5, 1.2
 _STILL = 0.02
 
 
-def follow(wanted: tuple[float, float], yaw: float, facing: float, limits: RobotLimits) -> Command:
+def follow(
+    velocity: tuple[float, float], yaw: float, facing: float, limits: RobotLimits
+) -> Command:
     """Return the command with which a robot follows a velocity.
 
     Args:
-        wanted: velocity in the frame of ``yaw``, m/s.
+        velocity: velocity in the frame of ``yaw``, m/s.
         yaw: the robot's, rad.
         facing: bearing of the goal from the robot, rad; a robot that stands, or that goes
             sideways, turns there.
         limits: the robot's.
     """
-    speed = math.hypot(*wanted)
+    speed = math.hypot(*velocity)
     if limits.vy_max > 0.0:
-        off = math.atan2(wanted[1], wanted[0]) - yaw
+        off = math.atan2(velocity[1], velocity[0]) - yaw
         v, vy = speed * math.cos(off), speed * math.sin(off)
         share = min(
             1.0,
@@ -32,7 +34,7 @@ def follow(wanted: tuple[float, float], yaw: float, facing: float, limits: Robot
             limits.vy_max / max(abs(vy), 1e-9),
         )
         return Command(v * share, _rate(facing, limits), vy * share)
-    off = math.remainder(math.atan2(wanted[1], wanted[0]) - yaw, 2.0 * math.pi)
+    off = math.remainder(math.atan2(velocity[1], velocity[0]) - yaw, 2.0 * math.pi)
     if speed < _STILL:
         return Command(0.0, 0.0)
     v = speed * max(0.0, math.cos(off)) if abs(off) < _TURN else 0.0

@@ -103,17 +103,17 @@ def check_names(weights: Mapping[str, Array], parts: Sequence[str], where: str) 
         )
 
 
-def check_widths(where: str, *wanted: tuple[str, int, int]) -> None:
+def check_widths(where: str, *expected: tuple[str, int, int]) -> None:
     """Raise an error for layers with another number of inputs.
 
     Args:
         where: the file.
-        wanted: name of a part, numbers that it takes, and those that it should take.
+        expected: name of a part, numbers that it takes, and those that it should take.
 
     Raises:
         InputError: they differ.
     """
-    for part, found, width in wanted:
+    for part, found, width in expected:
         if found != width:
             raise InputError(
                 f"{where}: '{part}' takes {found} numbers, not {width}; networks with occupancy "

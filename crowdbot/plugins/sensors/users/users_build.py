@@ -55,14 +55,14 @@ class SyntheticUser(ABC):
     ) -> Array:
         """Return the user's command; two readings at the same time are equal."""
         if memory[STARTED] == 0.0 or t > memory[TIME]:
-            wanted = wish(self._user, self._body, self._goal, self._most, scene, pose)
-            ahead, aside = self.deflect(wanted, t, rng, memory)
+            desired = wish(self._user, self._body, self._goal, self._most, scene, pose)
+            ahead, aside = self.deflect(desired, t, rng, memory)
             memory[:HEAD] = 1.0, t, self._most[0] * full(ahead), self._most[1] * full(aside)
         return memory[V:HEAD].copy()
 
     @abstractmethod
     def deflect(
-        self, wanted: Wish, t: float, rng: np.random.Generator, memory: Array
+        self, desired: Wish, t: float, rng: np.random.Generator, memory: Array
     ) -> tuple[float, float]:
         """Return the stick's deflections ahead and to the left at a new time.
 
@@ -92,14 +92,14 @@ class StickUser(SyntheticUser):
         )
 
     def deflect(
-        self, wanted: Wish, t: float, rng: np.random.Generator, memory: Array
+        self, desired: Wish, t: float, rng: np.random.Generator, memory: Array
     ) -> tuple[float, float]:
         """Return the deflections at a new time."""
         spec, own = self._user, memory[HEAD:]
         level = self._tiredness(t)
         ring = own[self._RING :].reshape(self._ring, 2)
         now = round(t * spec.rate)
-        ring[now % self._ring] = wanted.ahead, wanted.aside
+        ring[now % self._ring] = desired.ahead, desired.aside
         late = spec.delay + (self._tired.tired_delay * level if self._tired else 0.0)
         ahead, aside = ring[(now - round(late * spec.rate)) % self._ring].tolist()
         if not self._info.random:
@@ -155,7 +155,7 @@ class SwitchUser(SyntheticUser):
         self._switch = spec
 
     def deflect(
-        self, wanted: Wish, t: float, rng: np.random.Generator, memory: Array
+        self, desired: Wish, t: float, rng: np.random.Generator, memory: Array
     ) -> tuple[float, float]:
         """Return the deflections of the selected direction at a new time."""
         spec, own = self._switch, memory[HEAD:]
@@ -163,21 +163,21 @@ class SwitchUser(SyntheticUser):
         mark = int(own[self._MARK])
         lit = mark or 1 + int((t - own[self._SINCE]) / spec.scan_period) % 3
         due = own[self._PRESS] > 0.0
-        if not due and (lit != self._wanted(wanted, mark)) == bool(mark):
+        if not due and (lit != self._wanted(desired, mark)) == bool(mark):
             own[self._PRESS] = t + spec.reaction * max(0.2, 1.0 + spec.reaction_spread * draw)
         elif due and t >= own[self._PRESS]:
             own[:] = 0.0 if mark else lit, t, 0.0
         ahead, aside = self.MARKS[int(own[self._MARK])]
         return spec.deflection * ahead, spec.deflection * aside
 
-    def _wanted(self, wanted: Wish, mark: int) -> int:
+    def _wanted(self, desired: Wish, mark: int) -> int:
         """Return the mark that the user wants when its press takes effect; 0: to stand."""
         spec, aside = self._switch, self.MARKS[mark][1]
-        off = wanted.off - spec.reaction * spec.deflection * aside * self._most[1]
+        off = desired.off - spec.reaction * spec.deflection * aside * self._most[1]
         if abs(off) > spec.tolerance and off * aside >= 0.0:
             return 2 if off > 0.0 else 3
         speed = spec.deflection * self._most[0]
-        return 1 if wanted.free > speed * (spec.reaction + spec.gap_time) and not aside else 0
+        return 1 if desired.free > speed * (spec.reaction + spec.gap_time) and not aside else 0
 
 
 def build(spec: UserSpec, context: SensorContext) -> SyntheticUser:

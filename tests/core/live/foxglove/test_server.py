@@ -238,7 +238,7 @@ def test_parameters_say_and_set() -> None:
         wish["parameters"] = [{"name": "scenario", "value": "two"}, {"name": "seed", "value": 5}]
         socket.send(json.dumps(wish))
         until(lambda: session.seed == 5)
-        assert session.wanted == "two"
+        assert session.requested == "two"
 
 
 @pytest.mark.parametrize(
