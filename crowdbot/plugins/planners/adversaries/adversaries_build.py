@@ -237,18 +237,16 @@ def fingerprint(points: Array) -> str:
     return hashlib.sha256(repr(cells).encode()).hexdigest()[:16]
 
 
-def build_never_aside(spec: specs.NeverAsideSpec) -> StopAndGo:
-    """Build `stop_and_go` without evasion."""
-    del spec
-    return StopAndGo(StopAndGoSpec(most_aside=0.0))
+class NeverAside(StopAndGo):
+    """Adversary that stops for people as `stop_and_go` does, and never evades them."""
+
+    def __init__(self, spec: specs.NeverAsideSpec) -> None:
+        del spec
+        super().__init__(StopAndGoSpec(most_aside=0.0))
 
 
-def build_wall_bully(spec: specs.WallBullySpec) -> Bully:
-    """Build a bully that follows the wall."""
-    return Bully(spec, WallHug(WallHugSpec()))
+class WallBully(Bully):
+    """Bully that follows the wall."""
 
-
-build_bully, build_shield, build_strobe, build_curtsey = Bully, Shield, Strobe, Curtsey
-build_lane_waiter, build_creep, build_reverse, build_weave = LaneWaiter, Creep, Reverse, Weave
-build_park, build_quitter, build_gap_rush = Park, Quitter, GapRush
-build_late_start, build_draw_replay = LateStart, DrawReplay
+    def __init__(self, spec: specs.WallBullySpec) -> None:
+        super().__init__(spec, WallHug(WallHugSpec()))
