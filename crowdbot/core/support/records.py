@@ -104,12 +104,21 @@ def columns_of(record: RecordType[Any]) -> int:
     return record.itemsize // 8
 
 
-def record_values(record: RecordType[Any], **values: float) -> NDArray[np.float64]:
+def record_values(
+    record: RecordType[Any], source: object = None, /, **values: float
+) -> NDArray[np.float64]:
     """Return the values of a record's fields as an array, in the fields' order.
+
+    Args:
+        record: the type.
+        source: its attributes are the values of fields that are not given.
+        values: by field.
 
     Raises:
         TypeError: a value is missing, or there is no such field.
     """
+    others = (n for n in record.names if n not in values and hasattr(source, n))
+    values |= {name: getattr(source, name) for name in others}
     wrong = set(record.names) ^ values.keys()
     if wrong:
         raise TypeError(f"missing or unknown fields: {', '.join(sorted(wrong))}")

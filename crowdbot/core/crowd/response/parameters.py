@@ -134,44 +134,19 @@ class Human:
         """Return the record (1,) for decisions every ``dt`` seconds."""
         numbers = record_values(
             DECISION_RESPONSE,
-            sight=self.sight,
+            self,
             view_cosine=math.cos(0.5 * self.field_of_view),
-            late_time=self.late_time,
-            late_gap=self.late_gap,
-            reaction_time=self.reaction_time,
-            horizon=self.horizon,
-            clearance=self.clearance,
             lateral=self.lateral_acceleration,
-            braking=self.braking,
             total=self.total_acceleration,
-            stop_gap=self.stop_gap,
             decision=dt,
-            late_time_standing=self.late_time_standing,
             seen_standing=self.standing_speed,
             seen_moving=self.moving_speed,
             all_stop=self.all_stop_short,
-            sight_time=self.sight_time,
-            hearing_time=self.hearing_time,
-            clearance_range=self.clearance_range,
-            clearance_growth=self.clearance_growth,
-            clearance_speed=self.clearance_speed,
-            most_clearance=self.most_clearance,
-            yield_time=self.yield_time,
-            waiting_speed=self.waiting_speed,
-            speeding_up=self.speeding_up,
-            intent=self.intent,
         )
         return rows_in(numbers, DECISION_RESPONSE)
 
     @property
     def by_tick(self) -> Rows[TickResponse]:
         """Return the record (1,) for ticks."""
-        numbers = record_values(
-            TICK_RESPONSE,
-            standing_speed=self.standing_speed,
-            moving_speed=self.moving_speed,
-            least_braking=self.braking,
-            standing_gap=self.standing_gap,
-            standing_stiffness=self.standing_stiffness,
-        )
+        numbers = record_values(TICK_RESPONSE, self, least_braking=self.braking)
         return rows_in(numbers, TICK_RESPONSE)

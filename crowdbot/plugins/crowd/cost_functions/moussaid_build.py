@@ -147,7 +147,7 @@ def build(spec: MoussaidSpec) -> CompiledCost:
         prepare=_prepare,
         excess=_excess,
         lower_bound=_lower_bound,
-        params=record_values(_PARAMS, **spec.range.cost_params(), d_max=spec.d_max),
+        params=record_values(_PARAMS, spec, **spec.range.cost_params()),
         weight=spec.weight,
         wall_reach=(min(NEAR_WALLS, spec.d_max * (1.0 + 1e-6)), 0.0),
         looks_farther=spec.d_max > NEAR_WALLS,

@@ -271,13 +271,7 @@ def build(spec: ParisSpec) -> CompiledCost:
         base=_base,
         prepare=_prepare,
         excess=_excess,
-        params=record_values(
-            _PARAMS,
-            **spec.range.cost_params(),
-            w_a=spec.w_a,
-            w_b=spec.w_b,
-            t_max=spec.t_max,
-        ),
+        params=record_values(_PARAMS, spec, **spec.range.cost_params()),
         weight=spec.weight,
         # Walls that are farther away are only counted.
         wall_reach=(0.0, (1.0 + 1e-6) * max(spec.t_max, _BRAKING)),

@@ -87,11 +87,8 @@ def build(spec: PledestriansSpec) -> CompiledCost:
         excess=_excess,
         params=record_values(
             _PARAMS,
+            spec,
             **spec.range.cost_params(),
-            w_a=spec.w_a,
-            w_b=spec.w_b,
-            t_min=spec.t_min,
-            t_max=spec.t_max,
             cost_of_way=2.0 * math.sqrt(spec.w_a * spec.w_b),
         ),
         weight=spec.weight,

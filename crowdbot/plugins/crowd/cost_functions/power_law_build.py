@@ -118,7 +118,7 @@ def build(spec: PowerLawSpec) -> CompiledCost:
         excess=from_target,
         gradient=to_target,
         optimum=target,
-        params=record_values(_PARAMS, **spec.range.cost_params(), k=spec.k, tau0=spec.tau0),
+        params=record_values(_PARAMS, spec, **spec.range.cost_params()),
         weight=spec.weight,
         # Later collisions exert no force.
         wall_reach=(0.0, spec.tau0),

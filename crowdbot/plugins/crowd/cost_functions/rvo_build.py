@@ -117,7 +117,7 @@ def build(spec: RvoSpec) -> CompiledCost:
         prepare=_prepare,
         excess=_excess,
         lower_bound=_lower_bound,
-        params=record_values(_PARAMS, **spec.range.cost_params(), w=spec.w),
+        params=record_values(_PARAMS, spec, **spec.range.cost_params()),
         weight=spec.weight,
         wall_reach=(min(NEAR_WALLS, spec.range.value), 0.0),
         looks_farther=True,

@@ -215,12 +215,8 @@ def build(spec: SocialForcesAvoidanceSpec) -> CompiledCost:
         optimum=target,
         params=record_values(
             _PARAMS,
+            spec,
             **spec.range.cost_params(),
-            v0=spec.v0,
-            sigma=spec.sigma,
-            u0=spec.u0,
-            r=spec.r,
-            dt=spec.dt,
             relative=float(spec.stride == "relative"),
         ),
         weight=spec.weight,

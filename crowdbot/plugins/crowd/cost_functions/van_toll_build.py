@@ -90,11 +90,7 @@ def build(spec: VanTollSpec) -> CompiledCost:
         base=_base,
         prepare=_prepare,
         excess=_excess,
-        params=record_values(
-            _PARAMS,
-            **spec.range.cost_params(),
-            max_distance=spec.max_distance,
-        ),
+        params=record_values(_PARAMS, spec, **spec.range.cost_params()),
         weight=spec.weight,
         wall_reach=(min(NEAR_WALLS, spec.max_distance * (1.0 + 1e-6)), 0.0),
         looks_farther=spec.max_distance > NEAR_WALLS,
