@@ -123,32 +123,12 @@ def walk(
     people = as_rows(flat[s.HEADER_SIZE : s.HEADER_SIZE + count * s.AGENT_COLUMNS], s.PERSON)
     places, speeds, pulls = found[0], found[1], found[2]
     for k in range(robots.shape[0]):
-        for i in range(count):
-            for c in range(2):
-                if k == 0:
-                    places[0, i, c], speeds[0, i, c] = position[i, c], velocity[i, c]
-                else:
-                    after = speeds[k - 1, i, c] + dt * pulls[k - 1, i, c]
-                    both = speeds[k - 1, i, c] + after
-                    places[k, i, c] = places[k - 1, i, c] + 0.5 * dt * both
-                    speeds[k, i, c] = after
+        _move(k, dt, position, velocity, places, speeds, pulls)
         for c in range(4):
             robot[0, c] = robots[k, c]
         for n in range(flat.shape[0]):
             flat[n] = blank[n]
-        for i in range(count):
-            p = people[i]
-            p.x, p.y, p.vx, p.vy = (
-                places[k, i, 0],
-                places[k, i, 1],
-                speeds[k, i, 0],
-                speeds[k, i, 1],
-            )
-            p.goal_x, p.goal_y = goal[i, 0], goal[i, 1]
-            p.waiting = s.PRESENT if present[i] else s.NOT_YET
-            ax, ay = p.goal_x - p.x, p.goal_y - p.y
-            away = max(math.hypot(ax, ay), 1e-9)
-            p.dir_x, p.dir_y = ax / away, ay / away
+        _place(people, places[k], speeds[k], goal, present)
         seen = floats2(crowd, SEEN)
         look(people, crowd, robot, seen)
         for g in range(groups.shape[0]):
@@ -162,6 +142,36 @@ def walk(
         for i in range(count):
             if present[i]:
                 pulls[k, i, 0], pulls[k, i, 1] = people[i].ax, people[i].ay
+
+
+@kernel
+def _move(
+    k: int, dt: float, position: Array, velocity: Array, places: Array, speeds: Array, pulls: Array
+) -> None:
+    """Write positions and velocities at decision k: the given ones, or moved on by ``dt``."""
+    for i in range(position.shape[0]):
+        for c in range(2):
+            if k == 0:
+                places[0, i, c], speeds[0, i, c] = position[i, c], velocity[i, c]
+            else:
+                after = speeds[k - 1, i, c] + dt * pulls[k - 1, i, c]
+                both = speeds[k - 1, i, c] + after
+                places[k, i, c] = places[k - 1, i, c] + 0.5 * dt * both
+                speeds[k, i, c] = after
+
+
+@kernel
+def _place(people: s.People, position: Array, velocity: Array, goal: Array, present: Mask) -> None:
+    """Put people where they are at a decision, each heading for the goal."""
+    for i in range(position.shape[0]):
+        p = people[i]
+        p.x, p.y = position[i, 0], position[i, 1]
+        p.vx, p.vy = velocity[i, 0], velocity[i, 1]
+        p.goal_x, p.goal_y = goal[i, 0], goal[i, 1]
+        p.waiting = s.PRESENT if present[i] else s.NOT_YET
+        ax, ay = p.goal_x - p.x, p.goal_y - p.y
+        away = max(math.hypot(ax, ay), 1e-9)
+        p.dir_x, p.dir_y = ax / away, ay / away
 
 
 @kernel

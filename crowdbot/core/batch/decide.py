@@ -70,22 +70,27 @@ def look(people: People, crowd: Indices, robots: Array, seen: Array) -> None:
 
 
 @kernel
-def decide_group(people: People, crowd: Indices, group: Indices, seen: Array) -> bool:
-    """Set the accelerations of one group; return False if a cost function returned NaN."""
-    choices, numbers = ints1(group, c.G_CHOICES), floats1(group, c.G_NUMBERS)
-    present, decides, members = (
-        mask1(crowd, c.PRESENT),
-        mask1(group, c.G_DECIDES),
-        mask1(group, c.G_MEMBERS),
-    )
-    shown, chosen = floats2(group, c.G_SHOWN), floats2(group, c.G_CHOSEN)
+def _begin(people: People, crowd: Indices, group: Indices, seen: Array) -> None:
+    """Write who of a group decides, the robots that it sees, and no choice yet."""
+    present, members = mask1(crowd, c.PRESENT), mask1(group, c.G_MEMBERS)
+    decides, chosen = mask1(group, c.G_DECIDES), floats2(group, c.G_CHOSEN)
     for i in range(people.shape[0]):
         decides[i] = present[i] and members[i]
         chosen[i, 0] = chosen[i, 1] = 0.0
+    shown = floats2(group, c.G_SHOWN)
     for r in range(shown.shape[0]):
         for k in range(4):
             shown[r, k] = seen[r, k]
         shown[r, 4] = seen[r, R_SEEN]
+
+
+@kernel
+def decide_group(people: People, crowd: Indices, group: Indices, seen: Array) -> bool:
+    """Set the accelerations of one group; return False if a cost function returned NaN."""
+    _begin(people, crowd, group, seen)
+    choices, numbers = ints1(group, c.G_CHOICES), floats1(group, c.G_NUMBERS)
+    present, decides = mask1(crowd, c.PRESENT), mask1(group, c.G_DECIDES)
+    shown, chosen = floats2(group, c.G_SHOWN), floats2(group, c.G_CHOSEN)
     position, velocity = floats2(crowd, c.POSITION), floats2(crowd, c.VELOCITY)
     goal, pillars = floats2(crowd, c.GOAL), floats2(crowd, c.DISCS)
     table = as_rows(floats1(group, c.G_TABLE), DISC)

@@ -80,7 +80,7 @@ def press(
     drive: DriveStateRecord, robot: RobotRecord, outlines: Array, r: int, people: People,
     traits: Rows[TraitsRecord], pressed: Array, dt: float,
 ) -> None:  # fmt: skip
-    """Add a tick's push to ``forced``, and the resulting share of people driven aside to ``aside``.
+    """Add a tick's push to ``drive.forced``, and people whom it drives aside to ``drive.aside``.
 
     Args:
         outlines: (R, K, 2) of the robots, of which this is number ``r``.

@@ -90,19 +90,9 @@ def tick(
     for i in range(agents.shape[0]):
         if agents[i].waiting == PRESENT:
             _advance(
-                header,
-                agents,
-                i,
-                people,
-                world,
-                machines,
-                outlines,
-                reaction,
-                discs,
-                room[i],
-                now,
-                dt,
-            )
+                header, agents, i, people, world, machines, outlines, reaction, discs, room[i],
+                now, dt,
+            )  # fmt: skip
     for i in entry_order:
         if agents[i].waiting == AT_PORTAL:
             try_to_re_enter(agents, i, people, world, machines, discs, now + dt)

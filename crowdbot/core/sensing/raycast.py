@@ -144,6 +144,73 @@ def cylinder_incidence(
 
 
 @array_kernel
+def _centre(discs: Array, near: NDArray[np.int64], o: Array, out: Array) -> None:
+    """Write position from the origin and radius of the near discs."""
+    for j in range(near.shape[0]):
+        i = near[j]
+        out[j, 0], out[j, 1], out[j, 2] = discs[i, X] - o[0], discs[i, Y] - o[1], discs[i, RADIUS]
+
+
+@array_kernel
+def _first_wall(
+    walls: Array,
+    heights: Array,
+    near: NDArray[np.int64],
+    o: Array,
+    dx: float,
+    dy: float,
+    dz: float,
+) -> tuple[float, int]:
+    """Return the distance to the first wall that a ray hits, and -2 minus the wall's number."""
+    best, hit = math.inf, -1
+    for i in near:
+        t = hit_wall(walls[i], heights[i], o, dx, dy, dz)
+        if t < best:
+            best, hit = t, -(2 + i)
+    return best, hit
+
+
+@array_kernel
+def _first_disc(
+    discs: Array,
+    near: NDArray[np.int64],
+    gap: Array,
+    centred: Array,
+    best: float,
+    oz: float,
+    dx: float,
+    dy: float,
+    dz: float,
+) -> tuple[float, int, bool]:
+    """Return the distance to the first near disc hit before ``best``, its place, and the side.
+
+    Args:
+        discs, near, gap: all discs; numbers of the near ones, nearest first; distances to these.
+        centred: position from the origin and radius of the near ones.
+        best: distance of the nearest hit so far, m.
+        oz: height of the origin, m.
+        dx, dy, dz: unit vector of the ray.
+
+    Returns:
+        the distance, the place among the near discs or -1, and True for a hit of the lateral
+        surface.
+    """
+    winner, side_hit = -1, False
+    for j in range(near.shape[0]):
+        if gap[j] > best:
+            break
+        px, py, r = centred[j, 0], centred[j, 1], centred[j, 2]
+        side = dx * py - dy * px
+        if side * side > r * r:  # quick test: passes beside it
+            continue
+        i = near[j]
+        t, lateral = hit_cylinder(px, py, r, discs[i, BOTTOM], discs[i, TOP], oz, dx, dy, dz)
+        if t < best:
+            best, winner, side_hit = t, j, lateral
+    return best, winner, side_hit
+
+
+@array_kernel
 def cast_rays(
     origins: Array,
     directions: Array,
@@ -170,36 +237,18 @@ def cast_rays(
     wall_count = disc_count = 0
     for k in range(rays):
         o = origins[k]
-        if k == 0 or (
-            o[0] != origins[k - 1, 0] or o[1] != origins[k - 1, 1]
-        ):  # heights do not matter here
+        # Heights do not matter here.
+        if k == 0 or o[0] != origins[k - 1, 0] or o[1] != origins[k - 1, 1]:
             wall_count = _near_walls(walls, o[0], o[1], max_range, near_wall)
             disc_count = _near_discs(discs, o[0], o[1], max_range, gap, near)
-            for j in range(disc_count):
-                i = near[j]
-                disc[j, 0], disc[j, 1] = discs[i, X] - o[0], discs[i, Y] - o[1]
-                disc[j, 2] = discs[i, RADIUS]
+            _centre(discs, near[:disc_count], o, disc)
         dx, dy, dz = directions[k, 0], directions[k, 1], directions[k, 2]
         length = math.sqrt(dx * dx + dy * dy + dz * dz)
         dx, dy, dz = dx / length, dy / length, dz / length
-        best, hit, side_hit = math.inf, -1, False
-        for j in range(wall_count):
-            i = near_wall[j]
-            t = hit_wall(walls[i], wall_heights[i], o, dx, dy, dz)
-            if t < best:
-                best, hit = t, -(2 + i)
-        winner = -1  # index among the near cylinders
-        for j in range(disc_count):
-            if gap[j] > best:
-                break
-            px, py, r = disc[j, 0], disc[j, 1], disc[j, 2]
-            side = dx * py - dy * px
-            if side * side > r * r:  # quick test: passes beside it
-                continue
-            i = near[j]
-            t, lateral = hit_cylinder(px, py, r, discs[i, BOTTOM], discs[i, TOP], o[2], dx, dy, dz)
-            if t < best:
-                best, winner, side_hit = t, j, lateral
+        best, hit = _first_wall(walls, wall_heights, near_wall[:wall_count], o, dx, dy, dz)
+        best, winner, side_hit = _first_disc(
+            discs, near[:disc_count], gap, disc, best, o[2], dx, dy, dz
+        )
         if best > max_range:
             continue
         distance[k] = best

@@ -41,7 +41,7 @@ from crowdbot.core.types.sensor import Reading, SensorInfo
 class Slot:
     """Offsets of a sensor's stamp, values and memory in the bank's state vector.
 
-    Of a camera, ``values`` is what it saw (`crowdbot.core.sim.cameras.images`).
+    The ``values`` of a camera are the scene in view, see `crowdbot.core.sim.cameras.images`.
     """
 
     info: SensorInfo
@@ -158,20 +158,10 @@ class SensorBank(LeafSystem):
             for n, slot in self.slots.items()
             if slot.info.camera
         }
+        self._declare_inputs(crowd, len(others.states))
         initial = np.zeros(size)
         for slot in self.slots.values():
             initial[slot.stamp] = -1.0
-        self._robot = self.DeclareVectorInputPort(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
-        self._crowd = (
-            None
-            if crowd is None
-            else self.DeclareVectorInputPort(ports.CROWD_STATE, crowd.state.size())
-        )
-        seen = range(len(others.states))
-        self._states = [self.DeclareVectorInputPort(*ports.other_robot(k)) for k in seen]
-        self._pushed = (
-            self.DeclareVectorInputPort(ports.ROBOT_PUSH, ports.ROBOT_PUSH_SIZE) if seen else None
-        )
         index = self.DeclareDiscreteState(initial)
         self.DeclareStateOutputPort(ports.READINGS, index)
         self._index = int(index)
@@ -181,6 +171,13 @@ class SensorBank(LeafSystem):
         infos = {n: x.info for n, x in self.slots.items()}
         self._blind = {n for n, i in infos.items() if not (i.sees or i.feels or i.camera)}
         self.DeclarePeriodicUnrestrictedUpdateEvent(self._step * TICK, 0.0, self._update)
+
+    def _declare_inputs(self, crowd: CrowdSystem | None, other_robots: int) -> None:
+        declare = self.DeclareVectorInputPort
+        self._robot = declare(ports.ROBOT_STATE, ports.ROBOT_STATE_SIZE)
+        self._crowd = None if crowd is None else declare(ports.CROWD_STATE, crowd.state.size())
+        self._states = [declare(*ports.other_robot(k)) for k in range(other_robots)]
+        self._pushed = declare(ports.ROBOT_PUSH, ports.ROBOT_PUSH_SIZE) if other_robots else None
 
     def reading(self, name: str, bank: Array) -> Reading:
         """Return the latest reading in a state of the bank, read-only."""

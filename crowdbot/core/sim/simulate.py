@@ -31,7 +31,7 @@ from crowdbot.core.runs.identity import (
     run_identity,
 )
 from crowdbot.core.runs.make_record import make_record, write_scenario
-from crowdbot.core.runs.outcome import Progress
+from crowdbot.core.runs.outcome import Outcome, Progress
 from crowdbot.core.runs.planner_files_kept import keep_planner_files
 from crowdbot.core.runs.read_and_score import (
     read_robots,
@@ -52,6 +52,7 @@ from crowdbot.core.sim.record import record_robots
 from crowdbot.core.sim.references import check_interrupted, make_references, partial
 from crowdbot.core.sim.run_setup import RunSetup, record_crowd
 from crowdbot.core.support.arguments import expect, expect_function, whole_number_of
+from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.suite.suite_entry import IN_NO_SUITE, SuiteEntry
@@ -239,11 +240,10 @@ def _record_run(
         names = tuple(builts) or ("",)
         seen = read_robots(folder / files.RECORDING, names, REPLAY_RATE, images)
         runs = {name: one.run for name, one in seen.items()}
-        if len(excused) < request.options.replace_draws:
-            excuse = excuse_of(outcome, runs, prepared.run.realisation, len(excused))
-            if excuse is not None and excuse.realisation not in {e.realisation for e in excused}:
-                shutil.rmtree(folder)
-                return excuse
+        excuse = _new_excuse(request, outcome, runs, prepared.run.realisation, excused)
+        if excuse is not None:
+            shutil.rmtree(folder)
+            return excuse
         scores = score_robots(
             request.registry,
             runs,
@@ -261,15 +261,28 @@ def _record_run(
         if request.options.replay:
             models = {name: built.model for name, built in builts.items()}
             shown = [] if images is None else images.images()
-            page = shown_run(
-                request.scenario, seen, models, parts, record, scores, shown,
-                prepared.run.people.agents,
-            )  # fmt: skip
+            agents = prepared.run.people.agents
+            page = shown_run(request.scenario, seen, models, parts, record, scores, shown, agents)
             write_replay(folder / files.REPLAY, page)
         record = _finish(folder, record, outcome.written)
         files.publish(folder, final)
     keep_planner_files(request.out, request.choice.all_files)
     return record
+
+
+def _new_excuse(
+    request: Request,
+    outcome: Outcome,
+    runs: Mapping[str, Trajectories],
+    realisation: str,
+    excused: Sequence[ExcusedPart],
+) -> ExcusedPart | None:
+    """Return why another draw replaces this run, if it may, and no draw like it was replaced."""
+    if len(excused) >= request.options.replace_draws:
+        return None
+    excuse = excuse_of(outcome, runs, realisation, len(excused))
+    known = {e.realisation for e in excused}
+    return None if excuse is None or excuse.realisation in known else excuse
 
 
 def _parts(request: Request, builts: Mapping[str, BuiltRun]) -> EnvironmentParts:

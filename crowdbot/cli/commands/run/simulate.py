@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -31,6 +31,10 @@ from crowdbot.cli.shared.run_arguments import (
     ScenarioArgument,
     SpecArgument,
 )
+from crowdbot.errors import UsageError
+
+if TYPE_CHECKING:
+    from crowdbot.dsl.scenario.scenario import Scenario
 
 
 def simulate(
@@ -82,27 +86,20 @@ def simulate(
     Several robots: crowdbot simulate two.yaml --planner a=dwa --planner b=mine.py:Mine
     """
     from crowdbot.cli.serving.serve_options import meshcat_view
-    from crowdbot.cli.shared.one_run import (
-        end_hung_process,
-        import_simulate,
-        interruptible,
-        print_run,
-    )
+    from crowdbot.cli.shared import one_run
     from crowdbot.cli.shared.progress import show_progress
     from crowdbot.core.runs.run_options import RunOptions
     from crowdbot.core.scenarios.library import open_spec, pick
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
-    from crowdbot.errors import UsageError
 
     with stdout_to_stderr():
         registry = installed(plugin, no_plugins)
         expansion = open_spec(spec, registry, overrides or ())
         chosen = pick(expansion, scenario)
-        if planner and not chosen.robots:
-            raise UsageError(f"--planner {planner[0]}: {chosen.id} has no robot to drive")
-        simulate_it = import_simulate()
+        _check_planners(planner or (), chosen)
+        simulate_it = one_run.import_simulate()
         watchers = meshcat_view(meshcat)
-        with interruptible() as stop, show_progress() as progress:
+        with one_run.interruptible() as stop, show_progress() as progress:
             run = simulate_it(
                 chosen,
                 registry,
@@ -123,12 +120,17 @@ def simulate(
                 ),
                 progress=progress,
                 stop=stop,
-                on_hang=end_hung_process,
+                on_hang=one_run.end_hung_process,
                 watchers=watchers,
             )
-    print_run(run, as_json=as_json, everything=everything)
+    one_run.print_run(run, as_json=as_json, everything=everything)
     if run.failed:
         raise typer.Exit(3)
+
+
+def _check_planners(planners: Sequence[str], scenario: Scenario) -> None:
+    if planners and not scenario.robots:
+        raise UsageError(f"--planner {planners[0]}: {scenario.id} has no robot to drive")
 
 
 def one_or_several(planners: Sequence[str] | None) -> str:
@@ -138,7 +140,6 @@ def one_or_several(planners: Sequence[str] | None) -> str:
         UsageError: there are several, and one does not name its robot.
     """
     from crowdbot.core.planning.fleet_choice import planners_by_robot
-    from crowdbot.errors import UsageError
 
     given = list(planners or ("dwa",))
     for text in given if len(given) > 1 else ():

@@ -229,7 +229,6 @@ def choose_velocities(
     )  # fmt: skip
     agent = deciding[0]
     options = FanOptions(base, direction, radius, half, drawn)
-    unit = candidates
     for b in range(table.shape[0]):
         if tabulated and b + 1 < table.shape[0]:
             _fetch_table(int(table[b + 1].index), ranked, indices, first)
@@ -239,7 +238,7 @@ def choose_velocities(
         scale = frame_of(agent, options, frame)
         terms = prepare(around, b, functions, weights, active)
         costs = AgentCosts(agent, functions, weights, active[:terms])
-        to_draw = drawn
+        unit, to_draw = candidates, drawn
         if settings[0].parity != 0.0 and not (ordered and drawn):
             single_candidates(agent, options, regular, world)
             frame[0], frame[1], frame[2], frame[3] = 0.0, 0.0, 1.0, 0.0  # unchanged
@@ -259,16 +258,12 @@ def choose_velocities(
             best, place = search(frame, x, y, bound, index, tabulated, start, costs, tried)
         random[i] = agent.random
         if best == math.inf:
-            if agent.parity == 0.0:
-                continue
-            place = least_forbidden(frame, unit, costs)
-            if place < 0:
-                continue
-            c = place
+            c = -1 if agent.parity == 0.0 else least_forbidden(frame, unit, costs)
         else:
             c = indices[i, place] if tabulated and not ordered else place
             first[i] = place
-        chosen[i, 0], chosen[i, 1] = in_world(frame, unit, c)
+        if c >= 0:
+            chosen[i, 0], chosen[i, 1] = in_world(frame, unit, c)
 
 
 @inline_kernel

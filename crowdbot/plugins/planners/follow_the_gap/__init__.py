@@ -1,1 +1,1 @@
-"""Steer into the widest gap, less the farther the nearest obstacle."""
+"""Steer into the widest gap, more strongly near obstacles."""

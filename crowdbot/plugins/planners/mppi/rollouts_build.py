@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from crowdbot.plugin import Array, kernel
+from crowdbot.plugin import Array, inline_kernel, kernel
 from crowdbot.plugins.planners.mppi.lanes_build import AWAY, BACK, LANES, VY, C, S, V, X, Y
 from crowdbot.plugins.planners.mppi.samples_build import (
     BACKWARD,
@@ -141,6 +141,40 @@ def _turned_away(around: RolloutObstacles, samples: Samples, i: int) -> float:
     return float(0.5 * (1.0 - (gx * lanes.c[i] + gy * lanes.s[i]) / long))
 
 
+@inline_kernel
+def _contact(
+    around: RolloutObstacles,
+    p: Array,
+    samples: Samples,
+    i: int,
+    m: int,
+    need: tuple[float, ...],
+    close: float,
+) -> tuple[float, float]:
+    """Return the weight of a hit at kept sample m, 0 without, and the closeness until then.
+
+    Args:
+        around, p, samples, i, need: as of `_cost`.
+        m: number of the sample, among those that are kept.
+        close: sum of closeness until the sample before.
+    """
+    kept, n, hit = samples.kept, m * WALLS_EVERY, 0.0
+    x, y, c, s = kept[m, X, i], kept[m, Y, i], kept[m, C, i], kept[m, S, i]
+    rest = 1.0 - (n + 1) / samples.plan.shape[0]
+    gap = _wall_gap(around, x, y, c, s)
+    if gap < need[0]:
+        hit = 1.0 + rest
+    if gap < p[COMFORT]:
+        close += 0.25 * WALLS_EVERY * (1.0 - gap / p[COMFORT])
+    if n % PEOPLE_EVERY == 0:
+        hard, near = _among_people(around, p, samples, n, (x, y, c, s), need[1])
+        if hard:
+            v, vy = kept[m, V, i], kept[m, VY, i]
+            hit = max(hit, (_STANDING + math.sqrt(v * v + vy * vy) / p[V_MAX]) * rest)
+        close += near
+    return hit, close
+
+
 @kernel
 def _cost(
     around: RolloutObstacles,
@@ -171,20 +205,8 @@ def _cost(
     )
     left_over, total, close = need[2] - p[PROGRESS], 0.0, 0.0
     for m in range(kept.shape[0]):
-        n, hit = m * WALLS_EVERY, 0.0
-        x, y, c, s = kept[m, X, i], kept[m, Y, i], kept[m, C, i], kept[m, S, i]
-        rest = 1.0 - (n + 1) / steps
-        gap = _wall_gap(around, x, y, c, s)
-        if gap < need[0]:
-            hit = 1.0 + rest
-        if gap < p[COMFORT]:
-            close += 0.25 * WALLS_EVERY * (1.0 - gap / p[COMFORT])
-        if n % PEOPLE_EVERY == 0:
-            hard, near = _among_people(around, p, samples, n, (x, y, c, s), need[1])
-            if hard:
-                v, vy = kept[m, V, i], kept[m, VY, i]
-                hit = max(hit, (_STANDING + math.sqrt(v * v + vy * vy) / p[V_MAX]) * rest)
-            close += near
+        n = m * WALLS_EVERY
+        hit, close = _contact(around, p, samples, i, m, need, close)
         away = kept[m, AWAY, i]
         total += min(WALLS_EVERY, steps - n) * (start - away)
         if hit > 0.0:

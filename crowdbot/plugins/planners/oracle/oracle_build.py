@@ -93,7 +93,7 @@ class Oracle(CrowdPrediction):
     def _paths(
         self, tried: Sequence[Plan], state: State, waypoint: tuple[float, float]
     ) -> Iterator[TriedPath]:
-        """Yield each plan that stays clear of walls as it is, and with a stop after its beginning.
+        """Yield the paths of plans that stay clear of walls, each also with a stop at once.
 
         The first one has been checked, and the last one is a stop.
         """

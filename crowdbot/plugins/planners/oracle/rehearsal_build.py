@@ -59,14 +59,15 @@ class Rehearsal:
     def first_clear(
         self, truth: Truth, trials: Iterable[TriedPath], pose: tuple[float, ...]
     ) -> int:
-        """Return the number of the first path without trouble.
+        """Return the number of the first path on which the robot touches no one.
 
-        If there is none: of the one that touches someone last, then drives someone aside last.
+        If there is none, return the path with the latest touch; among equals, the one that
+        drives a person aside latest.
 
         Args:
-            truth: of a crowd that can be foreseen.
-            trials: the wanted plan first. They are read only as far as needed.
-            pose: now.
+            truth: the ground truth, whose crowd can be foreseen.
+            trials: paths in the order of preference; read only as far as needed.
+            pose: the robot's pose now.
         """
         assert truth.foresee is not None
         latest, best = (-1.0, -1.0), 0

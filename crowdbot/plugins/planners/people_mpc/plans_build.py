@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crowdbot.plugin import Array, array_kernel, kernel
+from crowdbot.plugin import Array, array_kernel, inline_kernel, kernel
 from crowdbot.plugins.planners.people_mpc.giving_way_build import give_way
 from crowdbot.plugins.planners.people_mpc.plan_world_build import (
     STEP,
@@ -109,6 +109,91 @@ def _stepped(
     return ahead * c - left * s, ahead * s + left * c, yaw, v + dv, w_next, vy + dvy
 
 
+@inline_kernel
+def _target(
+    p: Array,
+    first: tuple[float, float, float],
+    off: float,
+    aside: float,
+    pace: float,
+    away: float,
+    t: float,
+) -> tuple[float, float, float]:
+    """Return the velocity v, w, vy that a plan wants at time t, slow enough to stop at the goal.
+
+    Args:
+        p, first, aside, pace: as of `roll`.
+        off: direction of the goal from the heading, rad.
+        away: distance to the goal, m.
+        t: since the plan began, s.
+    """
+    brake = math.sqrt(2.0 * p[A_MAX] * away)
+    if t > p[TURN_TIME] + 0.5 * STEP:
+        top = min(pace * p[V_MAX], brake)
+        return _second(p, first, off, aside * max(0.0, 1.0 - t / p[HORIZON]), top)
+    return min(first[0], brake), first[1], first[2]
+
+
+@inline_kernel
+def _hurries(
+    world: PlanWorld,
+    p: Array,
+    gap: float,
+    pose: tuple[float, float, float],
+    going: tuple[float, float],
+    t: float,
+    since: float,
+) -> bool:
+    """Return True if the robot would reach a person who stood still within the headway.
+
+    Args:
+        world, p: as of `roll`.
+        gap: to the nearest person, m.
+        pose: x, y, yaw of the robot.
+        going: its velocity, m/s.
+        t: since the plan began, s.
+        since: time for which people walk on, s.
+    """
+    near = gap < p[HEADWAY] * p[V_MAX] + p[HURRY_ROOM]
+    if not (p[HURRY] > 0.0 and t < p[HURRY_WITHIN] and near):
+        return False
+    x, y = pose[0] + p[HEADWAY] * going[0], pose[1] + p[HEADWAY] * going[1]
+    return bool(gaps(world, x, y, pose[2], since)[0] < p[HURRY_ROOM])
+
+
+@inline_kernel
+def _least_cost(p: Array, start: float, away: float, total: float, close: float, t: float) -> float:
+    """Return the least cost of progress and clearance with which a plan can end.
+
+    Args:
+        p: parameters.
+        start, away: distances to the goal when the plan began, and now, m.
+        total: integral of the distance to the goal until now, m s.
+        close: closeness until now.
+        t: since the plan began, s.
+    """
+    scale, left = 2.0 / (p[V_MAX] * p[HORIZON]), p[HORIZON] - t
+    least = total + max(0.0, left * (away - 0.5 * p[V_MAX] * left))
+    made = (start - least / p[HORIZON]) * scale
+    return float(p[PROGRESS] * (1.0 - made) + p[CLEARANCE] * close)
+
+
+@inline_kernel
+def _give_way_at(
+    world: PlanWorld, now: PlanWorld, t: float, robot: tuple[float, float, float, float, float]
+) -> None:
+    """Move people by a step of the prediction, those who yield out of the robot's way.
+
+    Args:
+        world: people when the plan began, and their prediction.
+        now: people at time t, changed in place.
+        t: since the plan began, s.
+        robot: x, y, velocity and extent of the robot.
+    """
+    n = min(round(t / STEP), world.predicted.shape[0]) - 1
+    give_way(now.people, world.people, world.yields, world.predicted, n, robot, STEP)
+
+
 @kernel
 def roll(
     world: PlanWorld,
@@ -140,52 +225,36 @@ def roll(
     person, wall = gaps(world, x, y, yaw, 0.0)
     need = min(p[MARGIN], min(person, wall) - _SLACK)
     close, t, total, beside, hurried = 0.0, 0.0, 0.0, 0.0, 0.0
-    gx, gy = world.goal[0] - x, world.goal[1] - y
-    start, scale = math.sqrt(gx * gx + gy * gy), 2.0 / (p[V_MAX] * p[HORIZON])
+    start = math.sqrt((world.goal[0] - x) ** 2 + (world.goal[1] - y) ** 2)
     while t < p[HORIZON] - 0.5 * STEP:
         t += STEP
         gx, gy = world.goal[0] - x, world.goal[1] - y
         away = math.sqrt(gx * gx + gy * gy)
-        brake = math.sqrt(2.0 * p[A_MAX] * away)
         off = math.atan2(gy, gx) - yaw
-        if t > p[TURN_TIME] + 0.5 * STEP:
-            top = min(pace * p[V_MAX], brake)
-            target = _second(p, first, off, aside * max(0.0, 1.0 - t / p[HORIZON]), top)
-        else:
-            target = min(first[0], brake), first[1], first[2]
+        if t <= p[TURN_TIME] + 0.5 * STEP:
             beside = abs(wrapped(off))
+        target = _target(p, first, off, aside, pace, away, t)
         dx, dy, yaw, v, w, vy = _stepped(p, (yaw, v, w, vy), target)
         x += dx
         y += dy
         going = dx / STEP, dy / STEP
         if responds:
-            n = min(round(t / STEP), world.predicted.shape[0]) - 1
-            give_way(
-                now.people, world.people, world.yields, world.predicted, n,
-                (x, y, going[0], going[1], extent), STEP,
-            )  # fmt: skip
+            _give_way_at(world, now, t, (x, y, going[0], going[1], extent))
         since = 0.0 if responds else t
         person, wall = gaps(now, x, y, yaw, since)
-        watched = p[HURRY] > 0.0 and t < p[HURRY_WITHIN]
-        if watched and person < p[HEADWAY] * p[V_MAX] + p[HURRY_ROOM]:
-            soon, _ = gaps(now, x + p[HEADWAY] * going[0], y + p[HEADWAY] * going[1], yaw, since)
-            if soon < p[HURRY_ROOM]:
-                hurried += STEP / p[HORIZON] * (1.0 - 0.6 * t / p[HORIZON])
+        if _hurries(now, p, person, (x, y, yaw), going, t, since):
+            hurried += STEP / p[HORIZON] * (1.0 - 0.6 * t / p[HORIZON])
         gap = min(person, wall)
         gx, gy = world.goal[0] - x, world.goal[1] - y
         away = math.sqrt(gx * gx + gy * gy)
         if gap < need:
-            speed = math.sqrt(v * v + vy * vy)
             mean = (total + away * (p[HORIZON] - t + STEP)) / p[HORIZON]
-            return PlanOutcome(mean, t, speed, 1.0, beside, hurried)
+            return PlanOutcome(mean, t, math.sqrt(v * v + vy * vy), 1.0, beside, hurried)
         total += away * STEP
         need = min(p[MARGIN], max(need, gap))
         doubted = min(person - p[GROWTH] * t, wall + 0.5 * p[COMFORT])
         close = max(close, (1.0 - doubted / p[COMFORT]) * (1.0 - 0.6 * t / p[HORIZON]))
-        left = p[HORIZON] - t
-        least = total + max(0.0, left * (away - 0.5 * p[V_MAX] * left))
-        made = (start - least / p[HORIZON]) * scale
-        if p[PROGRESS] * (1.0 - made) + p[CLEARANCE] * close > budget:
+        if _least_cost(p, start, away, total, close, t) > budget:
             return PlanOutcome(math.inf, t, 0.0, close, beside, hurried)
     speed = math.sqrt(v * v + vy * vy)
     return PlanOutcome(total / p[HORIZON], p[HORIZON], speed, min(1.0, close), beside, hurried)

@@ -188,10 +188,7 @@ def apart(points: Array, others: Array, distance: float) -> Mask:
 
 @kernel
 def walkers(people: Array, velocities: Array, near: float, speed: float) -> tuple[int, int]:
-    """Count people (K, 2) nearer than ``near`` (m).
-
-    And those of them faster than ``speed`` (m/s).
-    """
+    """Count people (K, 2) nearer than ``near`` (m), and those among them above ``speed`` (m/s)."""
     count = walk = 0
     for i in range(people.shape[0]):
         if math.hypot(people[i, 0], people[i, 1]) < near:

@@ -67,10 +67,7 @@ def core_of(spec_radius: float | None, body: RobotBody | None) -> tuple[Array, f
 
 @kernel
 def core_gap(core: Array, x: float, y: float) -> float:
-    """Return the distance of a point in the robot's frame to a core with corners, m.
-
-    Negative inside.
-    """
+    """Return the distance from a point in the robot's frame to a core, m; negative inside."""
     square, inside = math.inf, core.shape[0] > 2
     for i in range(core.shape[0] if inside else 1):
         j = (i + 1) % core.shape[0]
@@ -89,9 +86,7 @@ def core_gap(core: Array, x: float, y: float) -> float:
 def nearest_to_core(
     points: Array, core: Array, x: float, y: float, angle: float, reach: float
 ) -> float:
-    """Return the distance of the nearest of K points to a core with corners at a pose, m.
-
-    Inf if none.
+    """Return the distance from a core at a pose to the nearest of K points, m; inf without any.
 
     Args:
         points: (2, K) m.
