@@ -34,10 +34,7 @@ class FreeFloorGrid:
         self._cell = max(CELL, float(np.max(self._high - self._low)) / _MOST)
 
     def clearance(self, points: Array) -> Array:
-        """Return the distance (N,) from points (N, 2) to walls, pillars and solids.
-
-        Negative inside, m.
-        """
+        """Return distances (N,) from points (N, 2) to all obstacles, m; negative inside."""
         gap = np.full(len(points), np.inf)
         for x0, y0, x1, y1 in self._walls:
             gap = np.minimum(gap, _to_segment(points, (x0, y0), (x1, y1)))

@@ -198,10 +198,7 @@ def _rig(spec: ComponentSpec, model: RobotModel) -> tuple[Any, Any]:
 
 
 def _extent(rig: Any, shapes: Any) -> tuple[Array, Array, float]:
-    """Return smallest and largest x and y of all collision shapes from the base, and their top.
-
-    M.
-    """
+    """Return least and largest x and y of all collision shapes from the base, and the top, m."""
     plant = rig.plant
     context = plant.CreateDefaultContext()
     base = plant.GetBodyByName(rig.robot.base, rig.model).body_frame()

@@ -150,7 +150,7 @@ def _reference_problems(archive: Archive, name: str, expected: str) -> Iterator[
 
 
 def _strangers(archive: Archive, used: set[str]) -> Iterator[str]:
-    """Yield calibration members that no run uses."""
+    """Yield members of the archive with calibrations that no run uses."""
     own = {posixpath.dirname(name) for name in used}
     for name in sorted(archive.names):
         inside = name.startswith("runs/references/")

@@ -176,9 +176,9 @@ def _other_ending(rerun: Rerun) -> Iterator[str]:
 
 
 def _other_people(rerun: Rerun) -> Iterator[str]:
-    """Yield people that differ from the scenario's, in a suite without a lock.
+    """Yield a problem if the claimed people are not those of the scenario, without a lock.
 
-    On another platform they may be sampled differently, and then the trajectory differs too.
+    Another platform may sample other people, and then the trajectory differs, too.
     """
     claim, found = (r.hashes.realisation for r in (rerun.claimed.record, rerun.record))
     if claim != found and (rerun.same_platform or rerun.relation == "identical"):

@@ -40,10 +40,7 @@ _FORCES = record_type(GroupForcesRecord)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cohesion:
-    """Strengths of the forces that hold groups together, see `crowdbot.dsl.scenario.group_forces`.
-
-    SI.
-    """
+    """Strengths of the forces in groups, SI; see `crowdbot.dsl.scenario.group_forces`."""
 
     gaze: float = 4.0
     cohesion: float = 3.0
@@ -55,15 +52,7 @@ class Cohesion:
     @property
     def forces(self) -> Rows[GroupForcesRecord]:
         """Return the parameters (1,) for `hold_together`."""
-        numbers = record_values(
-            _FORCES,
-            gaze=self.gaze,
-            cohesion=self.cohesion,
-            repulsion=self.repulsion,
-            half_view=0.5 * self.field_of_view,
-            distance=self.distance,
-            limit=self.limit,
-        )
+        numbers = record_values(_FORCES, self, half_view=0.5 * self.field_of_view)
         return rows_in(numbers, _FORCES)
 
 

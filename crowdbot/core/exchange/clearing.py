@@ -36,7 +36,7 @@ class FreeFloor:
 
     @property
     def bounded(self) -> bool:
-        """Return True if something may be in the way."""
+        """Return True if the floor has a border or obstacles."""
         return self._floor is not None or not self._solid.is_empty
 
     def of(self, radius: float) -> Any:

@@ -121,9 +121,7 @@ def _turns(corners: Array) -> Array:
 
 
 def body_side(bearing: float) -> str:
-    """Return the side of a robot that a direction points to: front, left, right, rear or unknown.
-
-    ``unknown`` for NaN.
+    """Return the side of a robot in a direction: front, left, right or rear; of NaN, unknown.
 
     Args:
         bearing: of a point in the robot's frame, rad; each side has a quarter of the circle.

@@ -92,10 +92,7 @@ def message_type(msgtype: str) -> Any:
 
 
 def field_types(msgtype: str) -> dict[str, str] | None:
-    """Return field -> type (``float32[]``, ``float64[36]``, ``std_msgs/Header``).
-
-    None if unknown.
-    """
+    """Return field -> type, such as ``float32[]`` or ``std_msgs/Header``; None if unknown."""
     package, _, name = msgtype.replace("/msg/", "/").partition("/")
     found = _store().fielddefs.get(f"{package}/msg/{name}")
     if found is None:

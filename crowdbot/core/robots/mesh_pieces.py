@@ -79,8 +79,8 @@ def mesh_pieces(file: Path, scale: str, shape: MeshShape) -> MeshPieces | None:
 def bounded_hull(points: Array, most: int = MOST_CORNERS) -> Array | None:
     """Return at most ``most`` corners of a convex hull (N, 3), sorted; None without volume.
 
-    Of more corners those are kept that lie farthest in directions spread evenly, so the hull
-    shrinks a little and never grows.
+    If the hull has more, the corners farthest in evenly spread directions are kept: it shrinks a
+    little and never grows.
     """
     from scipy.spatial import ConvexHull, QhullError  # half a second
 

@@ -133,7 +133,7 @@ def other_radius(link: Xml.Element, radius: float, joint: str) -> str:
 
 
 def other_in_plugins(model: Xml.Element, track: float, radius: float) -> list[str]:
-    """Return notes on Gazebo's drives that say another track or wheel radius, m, than is used."""
+    """Return notes on Gazebo drives whose track or wheel radius (m) is not the one in use."""
     notes = []
     for plugin in model.iter("plugin"):
         for element in plugin.iter():

@@ -76,9 +76,9 @@ def _bins_of(px: float, py: float, qx: float, qy: float, r: float) -> tuple[int,
 def _sort_bodies(
     x: float, y: float, max_range: float, walls: Array, discs: Array
 ) -> tuple[Indices, Array]:
-    """Return bodies in range, nearest first (walls, then cylinders from ``len(walls)`` on).
+    """Return the numbers of bodies in range, nearest first, and the gaps (m) to all bodies.
 
-    Gaps, m.
+    Cylinders are numbered after the walls, from ``len(walls)`` on.
     """
     count = walls.shape[0]
     gap = np.full(count + discs.shape[0], math.inf)

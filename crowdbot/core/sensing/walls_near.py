@@ -121,9 +121,9 @@ class WallsNear:
 
 
 def _first_of_equal(rows: Array) -> Indices:
-    """Return the indices (N,) of the rows but those equal to an earlier one, in their order.
+    """Return the indices (N,) of rows that equal no earlier row, in order.
 
-    Of walls that lie on each other the first is hit.
+    If walls lie on each other, rays hit the first.
     """
     return np.sort(np.unique(rows, axis=0, return_index=True)[1])
 

@@ -41,7 +41,7 @@ def with_targets(builts: Mapping[str, BuiltRun], people: Realisation) -> dict[st
 
 
 def guide_of(built: BuiltRun, seed: int) -> PersonGuide | None:
-    """Return what tells a robot's planner where its person is; None without one.
+    """Return the guide that estimates a person's position for the planner; None without a person.
 
     Args:
         seed: of the run.
@@ -53,7 +53,7 @@ def guide_of(built: BuiltRun, seed: int) -> PersonGuide | None:
 
 
 def watch_of(built: BuiltRun) -> PersonWatch | None:
-    """Return what decides when a task about a person is done; None of other tasks."""
+    """Return the watch that ends a task about a person; None for other tasks."""
     if built.target is None:
         return None
     return PersonWatch(built.task, built.target, footprint_of_model(built.model))

@@ -40,7 +40,7 @@ class OtherCores:
 
 
 def _core_now() -> Callable[[], int] | None:
-    """Return what tells the present core; None where no one does, as on macOS."""
+    """Return a function that returns the current core; None without one, as on macOS."""
     if not hasattr(os, "sched_setaffinity"):
         return None
     found: Callable[[], int] | None = getattr(ctypes.CDLL(None), "sched_getcpu", None)

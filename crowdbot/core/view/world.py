@@ -54,10 +54,7 @@ class Map:
         return Path(points=tuple(self.at(x, y) for x, y in points), role=role, closed=closed)
 
     def grid(self) -> Iterator[Shape]:
-        """Yield grid lines every metre, or at a wider spacing if needed.
-
-        And numbers along two sides.
-        """
+        """Yield grid lines every metre, or at a wider spacing if needed."""
         step = max(1.0, nice(9.0 / self.scale))
         strong = max(step, nice(60.0 / self.scale))
         for role, every in (("grid", step), ("grid-strong", strong)):

@@ -156,7 +156,7 @@ class HumanResponse(RobotResponse):
 
 
 class GivingWay(RobotResponse):
-    """People give way as recorded near robots and vehicles, the more the faster these are.
+    """People give way as recorded near robots and vehicles, and more to faster ones.
 
     The numbers are fitted to recordings of two robots, a golf cart and cars; see
     docs/explanation/people_near_robots.md.

@@ -162,7 +162,7 @@ class Diagnostic:
 def render(diagnostics: Iterable[Diagnostic]) -> str:
     """Return all errors as readable text, with a count in the last line.
 
-    Of equal errors at many positions, the first `_ALIKE` are shown, and the number of the others.
+    If many positions have the same error, the first `_ALIKE` are shown, then a number.
     """
     found = list(diagnostics)
     count = "1 error" if len(found) == 1 else f"{len(found)} errors"

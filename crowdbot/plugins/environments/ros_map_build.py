@@ -158,8 +158,8 @@ def image_of(file: Path) -> str | None:
 def relative_image(image: str) -> str:
     """Return a path that stays valid if the map is copied to another machine.
 
-    Of an absolute path, as ROS 1 writes it, only the file's name is kept, and of ``~/``, ``$(find
-    maps)/`` and ``package://``, which only the other machine can resolve.
+    Absolute paths, which ROS 1 writes, are reduced to the file's name, and so are paths that only
+    the other machine can resolve: ``~/``, ``$(find maps)/``, ``package://``.
     """
     if _ELSEWHERE.match(image):
         return PurePosixPath(image).name

@@ -105,10 +105,7 @@ def nearest_gap(run: Trajectories) -> Array:
 def time_within(
     factory: ScoreFactory, run: Trajectories, low: float, high: float | None
 ) -> list[Score]:
-    """Score the share of time with the nearest gap in [low, high), m.
-
-    Without ``high``: no limit.
-    """
+    """Score the share of time with the nearest gap in [low, high), m; None: no upper limit."""
     gap = nearest_gap(run)
     t = run.t
     if duration(t) <= 0:

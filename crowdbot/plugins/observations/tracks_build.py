@@ -67,9 +67,9 @@ def _write_tracks(
 
 @kernel
 def _nearest(people: Array, x: float, y: float, most: float, away: Array, which: Indices) -> int:
-    """Write distances and rows of the nearest people (M, 5) within range; return how many.
+    """Write distances and rows of the nearest people (M, 5) within range; return their number.
 
-    Of equal distances the first ones.
+    At equal distances, earlier rows come first.
     """
     count, room = 0, away.shape[0]
     for j in range(people.shape[0]):

@@ -163,10 +163,7 @@ def _depth(x: float, y: float, length: float, narrow: float) -> float:
 def _to_wall(
     ax: float, ay: float, bx: float, by: float, length: float, narrow: float, most: float
 ) -> float:
-    """Return the least distance of a segment's part inside the level section, m.
-
-    At most ``most``.
-    """
+    """Return the distance to the part of a segment inside the level section, m, up to ``most``."""
     ex, ey = bx - ax, by - ay
     low, high = 0.0, 1.0
     for side in (-1.0, 1.0):  # cut to the cone, |y| narrow <= x

@@ -188,9 +188,7 @@ def overlap(
 
 @kernel
 def from_outline(outline: Array, x: float, y: float) -> tuple[float, float, float, float, float]:
-    """Return a point's place relative to a segment (K = 2) or a convex polygon.
-
-    Corners are counter-clockwise.
+    """Return a point's position relative to a segment (K = 2) or a counter-clockwise polygon.
 
     Returns:
         distance (m), negative inside a polygon; unit vector outwards; nearest point.

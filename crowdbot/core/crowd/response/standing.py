@@ -81,10 +81,7 @@ def stands(robot: RobotRecord, extent: float, standing: float, moving: float) ->
 def _away(
     agents: People, i: int, nx: float, ny: float, gap: float, response: TickResponse
 ) -> float:
-    """Return the required acceleration away from a standing robot in direction ``n``, m/s^2.
-
-    Or 0.
-    """
+    """Return the acceleration away from a standing robot in direction ``n``, m/s^2; 0: none."""
     closing = agents[i].vx * nx + agents[i].vy * ny
     room = gap - response.standing_gap
     lean = response.standing_stiffness * max(0.0, -room)

@@ -16,7 +16,7 @@ _FORMS = ("RECTANGLE", "POLYGON", "CIRCLE")
 
 @dataclass(frozen=True, slots=True)
 class VadereShape:
-    """A shape as it is written.
+    """A shape of Vadere: a polygon or a circle.
 
     Attributes:
         corners: its outline, m; empty for a circle.

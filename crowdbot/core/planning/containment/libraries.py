@@ -30,8 +30,8 @@ class Readable(NamedTuple):
 def python_libraries(search_path: tuple[str, ...]) -> Readable:
     """Return this Python, its installed packages, and modules on a search path.
 
-    Of a folder on the search path that is outside the installation, such as a checkout, only what
-    can be imported from it is readable: recordings may lie there, too.
+    In folders on the search path outside the installation, such as a checkout, only modules are
+    readable: recordings may lie there, too.
     """
     roots = [Path(p) for p in {sys.prefix, sys.base_prefix, sys.exec_prefix}]
     sites = [Path(p) for p in (*site.getsitepackages(), site.getusersitepackages())]

@@ -52,7 +52,7 @@ class RobotFitTask:
         return sum(n * whole.ceilings[c] for c, n in weights.items()) / sum(weights.values())
 
     @property
-    def what(self) -> list[Any]:
+    def inputs(self) -> list[Any]:
         """Return the values that identify this fit in its log."""
         return ["robot", self.crowd, self.overrides, [_digests(Path(f)) for f in self.files]]
 

@@ -17,10 +17,7 @@ _CLEARLY, _SLACK = 1.0 + 1e-9, 1e-9
 
 @kernel
 def gap_to_walls(walls: Array, pillars: Array, x: float, y: float) -> float:
-    """Return the distance from a point to the nearest wall or pillar surface, m.
-
-    Inf without any.
-    """
+    """Return the distance from a point to the nearest wall or pillar, m; inf if there is none."""
     nearest = math.inf
     for i in range(walls.shape[0]):
         dx, dy = _from_wall(walls, i, x, y)
@@ -114,8 +111,8 @@ def touched_at(
 ) -> tuple[float, float]:
     """Return the outline's point nearest to walls and pillars, in the robot's frame, m.
 
-    Of several equally near points, such as both corners of a side, it is the middle. Arguments as
-    in `outline_gap`.
+    If several points are equally near, such as both corners of a side, return their middle.
+    Arguments as in `outline_gap`.
     """
     limit = outline_gap(walls, pillars, outline, x, y, yaw) + _AT_ONCE
     sum_x, sum_y, count = 0.0, 0.0, 0
@@ -152,10 +149,7 @@ def _into(px: float, py: float, x: float, y: float, c: float, s: float) -> tuple
 
 @kernel
 def _to_segment(outline: Array, ax: float, ay: float, bx: float, by: float) -> float:
-    """Return the distance from an outline with at least two points to segment a-b, m.
-
-    0 if overlapping.
-    """
+    """Return the distance from an outline (two points or more) to segment a-b, m; 0 inside."""
     nearest = min(from_outline(outline, ax, ay)[0], from_outline(outline, bx, by)[0])
     count = outline.shape[0]
     for k in range(count):

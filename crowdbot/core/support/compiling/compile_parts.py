@@ -201,7 +201,7 @@ class KernelDispatcher(CPUDispatcher):
             ) from None
 
     def _whole(self, part: Any) -> Any:
-        """Return a part with its Python and C wrappers; the part is not compiled again."""
+        """Return a compiled function with its Python and C wrappers, without compiling it again."""
         # A part from the cache has a context of all functions, which cannot return new arrays.
         makes_arrays = self.targetoptions.get("_nrt", True)
         self.targetctx.refresh()  # as before any compilation; else numba knows no constants yet
