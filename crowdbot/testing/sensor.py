@@ -65,7 +65,7 @@ def check_info(component: Component[Any], registry: Registry | None = None) -> N
         info = sensor.info()
         _assert_info(info)
         assert _same_info(info, sensor.info()), "info() changes"
-        before = _copy_of(info)
+        before = replace(info, angles=None if info.angles is None else info.angles.copy())
         _assert_can_be_read(sensor, info)
         Probe(sensor)(crowded(), 0)
         assert _same_info(before, sensor.info()), "info() changes when the sensor is read"
@@ -313,10 +313,6 @@ def _assert_info(info: SensorInfo) -> None:
 def _same_info(one: SensorInfo, two: SensorInfo) -> bool:
     pairs = [(getattr(one, f.name), getattr(two, f.name)) for f in fields(SensorInfo)]
     return all(np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b for a, b in pairs)
-
-
-def _copy_of(info: SensorInfo) -> SensorInfo:
-    return replace(info, angles=None if info.angles is None else info.angles.copy())
 
 
 def _assert_reading(name: str, info: SensorInfo, values: Array) -> None:

@@ -79,7 +79,7 @@ class SpawnSampler:
         Raises:
             InputError: not all people fit into the area.
         """
-        groups = self._groups()
+        groups = draw_groups(self._spawn.groups, self._rng("groups"), self._count, None)
         places = self._places(groups, occupancy)
         table = self._parameters()
         rows: list[dict[str, Any]] = []
@@ -148,9 +148,6 @@ class SpawnSampler:
         return heading_to(x, y, route[0])
 
     # ---------------------------------------------------------------------- groups
-    def _groups(self) -> list[range]:
-        """Return the members of each group; the last one may be smaller."""
-        return draw_groups(self._spawn.groups, self._rng("groups"), self._count, None)
 
     def _places(self, groups: list[range], occupancy: Occupancy) -> Array:
         """Return everyone's start (N, 2), m; larger groups choose first."""

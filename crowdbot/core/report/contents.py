@@ -171,10 +171,6 @@ def crowd_lines(runs: Sequence[RunRow]) -> list[str]:
     return lines_of((name, like) for name, like in labels if name or like)
 
 
-def _responses(runs: Sequence[RunRow]) -> list[str]:
-    return [r.conditions.get("people_and_robot", "") for r in runs]
-
-
 def gather(
     results: Results, registry: Registry, heading: Heading, replays: Mapping[str, str]
 ) -> Contents:
@@ -209,7 +205,9 @@ def gather(
         floors=check_floors(results, table=table),
         suspicion=suspicion(heading.audit, results.runs),
         crowds=tuple(crowd_lines(results.runs)),
-        responses=tuple(response_lines(_responses(results.runs))),
+        responses=tuple(
+            response_lines([r.conditions.get("people_and_robot", "") for r in results.runs])
+        ),
         sample=sample_size(worked_out.headline),
         ranks=crowd_ranks(results, table=table),
         orders=orders(table, results.marks) if len(table.planners) > 1 else None,

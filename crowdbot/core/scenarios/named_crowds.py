@@ -103,7 +103,7 @@ def _opened(
         path.write_text(text, encoding="utf-8")
         path.with_name("usual.yaml").write_text(_USUAL, encoding="utf-8")
         document = load_document(path, roots, name="crowd", installed=installed(registry))
-        changes = [_in_crowd(o) for o in overrides]
+        changes = [(o if o.startswith("crowd.") else f"crowd.{o}") for o in overrides]
         found = expand_document(document, registry.scenario_model, changes)
     crowd = found.scenarios[0].crowd
     if crowd is None:
@@ -117,10 +117,6 @@ def _as_given(diagnostic: Diagnostic, text: str) -> Diagnostic:
     if mark is None or not mark.source.name.startswith(f"{_GIVEN}:"):
         return diagnostic
     return replace(diagnostic, mark=replace(mark, source=replace(mark.source, name=text)))
-
-
-def _in_crowd(override: str) -> str:
-    return override if override.startswith("crowd.") else f"crowd.{override}"
 
 
 def _is_document(path: Path) -> bool:

@@ -31,7 +31,7 @@ def differences(a: Any, b: Any, path: str = "") -> Iterator[Difference]:
     A map with another ``kind`` is one difference, since fields of different types are unrelated. A
     map on one side only is followed, so that each field is shown.
     """
-    if isinstance(a, Mapping) and isinstance(b, Mapping) and not _other_kind(a, b):
+    if isinstance(a, Mapping) and isinstance(b, Mapping) and a.get("kind") == b.get("kind"):
         for key in sorted({*a, *b}):
             below = f"{path}.{key}" if path else str(key)
             yield from differences(a.get(key, ABSENT), b.get(key, ABSENT), below)
@@ -44,10 +44,6 @@ def shown(value: Any) -> str:
     if value is ABSENT:
         return "–"
     return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
-
-
-def _other_kind(a: Mapping[str, Any], b: Mapping[str, Any]) -> bool:
-    return a.get("kind") != b.get("kind")
 
 
 def _same(a: Any, b: Any) -> bool:

@@ -94,7 +94,10 @@ def legend_of(
         width = _SWATCH + 8.0 + 6.6 * len(label) + 20.0
         if x + width > limit and x > left:
             x, y = left, y + _LINE
-        made += [*_swatch(role, x, y), _label(label, x + 2.0 * _SWATCH, y)]
+        made += [
+            *_swatch(role, x, y),
+            Text(at=((x + 2.0 * _SWATCH), y), text=label, role="text", size=12),
+        ]
         x += width + _SWATCH
     return [*made, *ruler], y + 22.0
 
@@ -177,10 +180,6 @@ def _swatch(role: str, x: float, y: float) -> Iterator[Shape]:
         yield Path(points=((x, middle), (end, middle)), role=role, inside=False)
     else:
         yield Path(points=_box(x, low, end, high), role=role, closed=True, inside=False)
-
-
-def _label(label: str, x: float, y: float) -> Text:
-    return Text(at=(x, y), text=label, role="text", size=12)
 
 
 def _box(x0: float, y0: float, x1: float, y1: float) -> tuple[tuple[float, float], ...]:

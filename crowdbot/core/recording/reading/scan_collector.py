@@ -32,7 +32,10 @@ class ScanCollector:
 
     def open(self, header: RecordingHeader) -> None:
         """Set the sensors from the header."""
-        self._sensors = {**_lidars(header), **_cones(header)}
+        self._sensors = {
+            **{scan_topic(n): s for n, s in header.sensors.items() if is_scan(s)},
+            **{range_topic(n): s for n, s in header.sensors.items() if is_cone(s)},
+        }
         self._thinning = {topic: Thinning(self._max_rate) for topic in self._sensors}
 
     def wants(self, topic: str) -> bool:
@@ -79,16 +82,6 @@ class ScanCollector:
 def _sensor_of(topic: str) -> str:
     """Return the sensor of a topic, which is its root."""
     return topic.rpartition("/")[0].removeprefix("/")
-
-
-def _lidars(header: RecordingHeader) -> dict[str, SensorInfo]:
-    """Topics of all lidars with plain scans."""
-    return {scan_topic(n): s for n, s in header.sensors.items() if is_scan(s)}
-
-
-def _cones(header: RecordingHeader) -> dict[str, SensorInfo]:
-    """Topics of all ultrasound and infrared sensors."""
-    return {range_topic(n): s for n, s in header.sensors.items() if is_cone(s)}
 
 
 def _ranges(path: Path, records: Sequence[Record], field: str) -> Array:
