@@ -6,11 +6,12 @@ import math
 
 import numpy as np
 
-from crowdbot.plugin import Array, Pose, Scene, SensorContext, SensorInfo, SimulationError
+from crowdbot.plugin import Array, Pose, Scene, SensorInfo, SimulationError
+from crowdbot.plugins.sensors.described_build import DescribedSensor
 from crowdbot.plugins.sensors.wheel_odometry import BaseOdometrySpec
 
 
-class BaseOdometry:
+class BaseOdometry(DescribedSensor):
     """Reading: (6,) x, y, yaw, v, w, vy; m, rad, m/s, rad/s; vy to the left."""
 
     def __init__(self, spec: BaseOdometrySpec) -> None:
@@ -24,10 +25,6 @@ class BaseOdometry:
             random=False,
             sees=False,
         )
-
-    def info(self) -> SensorInfo:
-        """Return the constant description."""
-        return self._info
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Return pose and twist of the base.
@@ -45,7 +42,4 @@ class BaseOdometry:
         return np.array([pose.x, pose.y, yaw, ahead, robot.w, aside])
 
 
-def build(spec: BaseOdometrySpec, context: SensorContext) -> BaseOdometry:
-    """Return odometry from its spec."""
-    del context
-    return BaseOdometry(spec)
+build = BaseOdometry.from_spec

@@ -15,7 +15,6 @@ from crowdbot.plugin import (
     Array,
     Pose,
     Scene,
-    SensorContext,
     SensorInfo,
     array_kernel,
     mount_pose,
@@ -23,12 +22,13 @@ from crowdbot.plugin import (
     sensor_pose_in_world,
 )
 from crowdbot.plugins.sensors.bumper import BumperSpec
+from crowdbot.plugins.sensors.described_build import DescribedSensor
 
 _EDGE = 1e-9  # rad; contacts at the very edge of the outer sectors count
 
 
-class Bumper:
-    """Reading: (sectors,) 0 or 1."""
+class Bumper(DescribedSensor):
+    """Reading: (sectors,) 0 or 1; ``angles`` are the (sectors + 1,) borders of the sectors."""
 
     def __init__(self, spec: BumperSpec) -> None:
         self._spec = spec
@@ -45,13 +45,6 @@ class Bumper:
             range_max=spec.reach,
             random=False,
         )
-
-    def info(self) -> SensorInfo:
-        """Return the constant description.
-
-        ``angles`` are the (sectors + 1,) borders of the sectors.
-        """
-        return self._info
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Return 1.0 for each sector in contact."""
@@ -100,7 +93,4 @@ def _mark(px: float, py: float, begin: float, span: float, pressed: Array) -> No
         pressed[0] = 1.0
 
 
-def build(spec: BumperSpec, context: SensorContext) -> Bumper:
-    """Return a bumper from its spec."""
-    del context
-    return Bumper(spec)
+build = Bumper.from_spec

@@ -9,12 +9,13 @@ import math
 
 import numpy as np
 
-from crowdbot.plugin import Array, Pose, Scene, SensorContext, SensorInfo, mount_pose
+from crowdbot.plugin import Array, Pose, Scene, SensorInfo, mount_pose
 from crowdbot.plugins.sensors.contact_force import ContactForceSpec
+from crowdbot.plugins.sensors.described_build import DescribedSensor
 
 
-class ContactForce:
-    """Reading: (3,) force x, y (N), torque about z (N m)."""
+class ContactForce(DescribedSensor):
+    """Reading: (3,) force x, y (N), torque about z (N m); ``range_max`` is the largest force, N."""
 
     def __init__(self, spec: ContactForceSpec) -> None:
         self._spec = spec
@@ -30,10 +31,6 @@ class ContactForce:
             sees=False,
             feels=True,
         )
-
-    def info(self) -> SensorInfo:
-        """Return the constant description; ``range_max`` is the largest force, N."""
-        return self._info
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Return the force of people in the last tick, in the axes of the mount."""
@@ -55,7 +52,4 @@ def _turned(x: float, y: float, angle: float) -> tuple[float, float]:
     return c * x - s * y, s * x + c * y
 
 
-def build(spec: ContactForceSpec, context: SensorContext) -> ContactForce:
-    """Return a contact force sensor from its spec."""
-    del context
-    return ContactForce(spec)
+build = ContactForce.from_spec

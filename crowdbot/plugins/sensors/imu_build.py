@@ -20,7 +20,6 @@ from crowdbot.plugin import (
     Array,
     Pose,
     Scene,
-    SensorContext,
     SensorInfo,
     SimulationError,
     kernel,
@@ -28,6 +27,7 @@ from crowdbot.plugin import (
     mount_tilt,
     rotation,
 )
+from crowdbot.plugins.sensors.described_build import DescribedSensor
 from crowdbot.plugins.sensors.imu import ImuSpec
 
 GRAVITY = 9.81  # m/s^2, the plant's
@@ -37,7 +37,7 @@ _SIZE = 6
 _NO_DRAWS = np.zeros(0)
 
 
-class Imu:
+class Imu(DescribedSensor):
     """Reading: angular rate (3) and specific force (3) in the axes of the mount."""
 
     def __init__(self, spec: ImuSpec) -> None:
@@ -66,10 +66,6 @@ class Imu:
             tilt=mount_tilt(spec.mount),
         )
         self._axes = rotation(*self._info.tilt, 0.0)
-
-    def info(self) -> SensorInfo:
-        """Return the constant description."""
-        return self._info
 
     def read(
         self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator, memory: Array
@@ -145,7 +141,4 @@ def _turn(angle: float) -> float:
     return angle + 2.0 * math.pi if angle < -math.pi else angle
 
 
-def build(spec: ImuSpec, context: SensorContext) -> Imu:
-    """Return an IMU from its spec."""
-    del context
-    return Imu(spec)
+build = Imu.from_spec

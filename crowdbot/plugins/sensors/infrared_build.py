@@ -17,14 +17,17 @@ from crowdbot.plugin import (
     Pose,
     RangeModel,
     Scene,
-    SensorContext,
     SensorInfo,
 )
+from crowdbot.plugins.sensors.described_build import DescribedSensor
 from crowdbot.plugins.sensors.infrared import InfraredSpec
 
 
-class Infrared:
-    """Draws new rays for every reading from the sensor's own stream, before any noise."""
+class Infrared(DescribedSensor):
+    """Draws new rays for every reading from the sensor's own stream, before any noise.
+
+    The ``angles`` of its description are the edges of the beam.
+    """
 
     def __init__(self, spec: InfraredSpec, noise: Sequence[NoiseGenerator] = ()) -> None:
         self._spec, self._range_model = spec, RangeModel(spec, noise)
@@ -40,10 +43,6 @@ class Infrared:
             range_max=spec.range_max,
             tilt=self._range_model.tilt,
         )
-
-    def info(self) -> SensorInfo:
-        """Return the constant description; ``angles`` are the edges of the beam."""
-        return self._info
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Return the distance (1,) to the nearest surface that faces the beam, m; inf if none."""
@@ -71,7 +70,4 @@ class Infrared:
         return np.column_stack([c - s * left, s + c * left, up])
 
 
-def build(spec: InfraredSpec, noise: Sequence[NoiseGenerator], context: SensorContext) -> Infrared:
-    """Return an infrared sensor from its spec and its noise generators."""
-    del context
-    return Infrared(spec, noise)
+build = Infrared.from_spec

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.plugin import Array, Pose, Scene, SensorContext, SensorInfo, SensorMessage
+from crowdbot.plugins.sensors.described_build import DescribedSensor
 from crowdbot.plugins.sensors.joystick import JoystickSpec
 
 #: Layout of the memory: 1 after a reading, its time, and the hand's error ahead and aside, in
@@ -21,7 +22,7 @@ from crowdbot.plugins.sensors.joystick import JoystickSpec
 STARTED, TIME, AHEAD, ASIDE = range(4)
 
 
-class Joystick:
+class Joystick(DescribedSensor):
     """Reading: (2,) v (m/s), w (rad/s)."""
 
     def __init__(self, spec: JoystickSpec, context: SensorContext) -> None:
@@ -42,10 +43,6 @@ class Joystick:
             random=spec.noise > 0.0 and not self._recorded,
             sees=False,
         )
-
-    def info(self) -> SensorInfo:
-        """Return the constant description."""
-        return self._info
 
     def read(
         self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator, memory: Array

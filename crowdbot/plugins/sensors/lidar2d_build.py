@@ -12,14 +12,14 @@ from crowdbot.plugin import (
     Pose,
     RangeModel,
     Scene,
-    SensorContext,
     SensorInfo,
 )
 from crowdbot.plugin.for_sensors import NO_RAYS, RayGrid, grid_rays
+from crowdbot.plugins.sensors.described_build import DescribedSensor
 from crowdbot.plugins.sensors.lidar2d import Lidar2dSpec
 
 
-class Lidar2d:
+class Lidar2d(DescribedSensor):
     """All beams are measured at the same time, whatever the robot's tilt.
 
     A lidar that is tilted down sees the floor.
@@ -45,10 +45,6 @@ class Lidar2d:
         self._grid = RayGrid(angles, [0.0])
         self._rays = grid_rays(self._grid) if self._range_model.tilted else NO_RAYS
 
-    def info(self) -> SensorInfo:
-        """Return the constant description; ``angles`` are in the sensor frame."""
-        return self._info
-
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Return ranges (R,) in m, inf for no return."""
         del t
@@ -62,7 +58,4 @@ class Lidar2d:
         return own.measure(distance[0], rng)
 
 
-def build(spec: Lidar2dSpec, noise: Sequence[NoiseGenerator], context: SensorContext) -> Lidar2d:
-    """Return a lidar from its spec and its noise generators."""
-    del context
-    return Lidar2d(spec, noise)
+build = Lidar2d.from_spec

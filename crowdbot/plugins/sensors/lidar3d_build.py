@@ -12,15 +12,18 @@ from crowdbot.plugin import (
     Pose,
     RangeModel,
     Scene,
-    SensorContext,
     SensorInfo,
 )
 from crowdbot.plugin.for_sensors import NO_RAYS, RayGrid, grid_rays
+from crowdbot.plugins.sensors.described_build import DescribedSensor
 from crowdbot.plugins.sensors.lidar3d import Lidar3dSpec
 
 
-class Lidar3d:
-    """All beams are measured at the same time; they hit the floor but not the robot."""
+class Lidar3d(DescribedSensor):
+    """All beams are measured at the same time; they hit the floor but not the robot.
+
+    The ``angles`` (L, C, 2) of its description are each beam's azimuth and elevation.
+    """
 
     def __init__(self, spec: Lidar3dSpec, noise: Sequence[NoiseGenerator] = ()) -> None:
         self._range_max, self._range_model = spec.range_max, RangeModel(spec, noise)
@@ -44,13 +47,6 @@ class Lidar3d:
         self._grid = RayGrid(azimuth, np.tan(elevation))
         self._rays = grid_rays(self._grid) if self._range_model.tilted else NO_RAYS
 
-    def info(self) -> SensorInfo:
-        """Return the constant description.
-
-        ``angles`` (L, C, 2) are each beam's azimuth and elevation.
-        """
-        return self._info
-
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Return ranges (L, C) in m, lowest layer first, inf for no return."""
         del t
@@ -69,7 +65,4 @@ class Lidar3d:
         return own.measure(distance.ravel(), rng).reshape(self._info.shape)
 
 
-def build(spec: Lidar3dSpec, noise: Sequence[NoiseGenerator], context: SensorContext) -> Lidar3d:
-    """Return a lidar from its spec and its noise generators."""
-    del context
-    return Lidar3d(spec, noise)
+build = Lidar3d.from_spec

@@ -17,12 +17,12 @@ from crowdbot.plugin import (
     Indices,
     Pose,
     Scene,
-    SensorContext,
     SensorInfo,
     mount_pose,
     sensor_pose_in_world,
 )
 from crowdbot.plugin.for_sensors import trunk_radius
+from crowdbot.plugins.sensors.described_build import DescribedSensor
 from crowdbot.plugins.sensors.people_tracker import PeopleTrackerSpec
 
 NOBODY = (-1.0, 0.0, 0.0, 0.0, 0.0)
@@ -30,7 +30,7 @@ _AIM_HEIGHT = 0.75  # share of a person's height
 _AIM_ASIDE = (0.0, -0.8, 0.8)  # share of the trunk's radius
 
 
-class PeopleTrackerSensor:
+class PeopleTrackerSensor(DescribedSensor):
     """Reading: (max_people, 5) id, x, y, vx, vy in the axes of base_link; m, m/s."""
 
     def __init__(self, spec: PeopleTrackerSpec) -> None:
@@ -46,10 +46,6 @@ class PeopleTrackerSensor:
             random=bool(spec.miss or spec.position_noise or spec.velocity_noise),
             privileged=True,
         )
-
-    def info(self) -> SensorInfo:
-        """Return the constant description."""
-        return self._info
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Return the people it sees, nearest first."""
@@ -116,7 +112,4 @@ def _in_base(people: Array, pose: Pose) -> Array:
     return np.hstack([(people[:, :2] - (pose.x, pose.y)) @ turn, people[:, 2:] @ turn])
 
 
-def build(spec: PeopleTrackerSpec, context: SensorContext) -> PeopleTrackerSensor:
-    """Return a tracker from its spec."""
-    del context
-    return PeopleTrackerSensor(spec)
+build = PeopleTrackerSensor.from_spec

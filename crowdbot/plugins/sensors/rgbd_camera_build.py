@@ -18,7 +18,6 @@ from crowdbot.plugin import (
     Pinhole,
     Pose,
     Scene,
-    SensorContext,
     SensorInfo,
     kernel,
     mount_pose,
@@ -27,12 +26,13 @@ from crowdbot.plugin import (
     sensor_rotation_in_world,
 )
 from crowdbot.plugin.for_sensors import MOST_MILLIMETRES, NO_RAYS, DepthRenderer, RayGrid, depth_mm
+from crowdbot.plugins.sensors.described_build import DescribedSensor
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 
 Image = NDArray[np.float32]
 
 
-class RgbdCamera:
+class RgbdCamera(DescribedSensor):
     """Depth camera with a global shutter; the robot's own tilt does not move the axis."""
 
     def __init__(self, spec: RgbdCameraSpec) -> None:
@@ -67,10 +67,6 @@ class RgbdCamera:
             and not self._limited
             and spec.depth_max < MOST_MILLIMETRES
         )
-
-    def info(self) -> SensorInfo:
-        """Return the constant description."""
-        return self._info
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Return depth (H, W) float32 in m, first row on top.
@@ -175,7 +171,4 @@ def _round_down(depth: Image, step: float, nearest: float) -> None:
                 depth[r, c] = max(math.floor(depth[r, c] / step) * step, nearest)
 
 
-def build(spec: RgbdCameraSpec, context: SensorContext) -> RgbdCamera:
-    """Return a camera from its spec."""
-    del context
-    return RgbdCamera(spec)
+build = RgbdCamera.from_spec

@@ -20,7 +20,6 @@ from crowdbot.plugin import (
     Pose,
     RangeModel,
     Scene,
-    SensorContext,
     SensorInfo,
     kernel,
 )
@@ -43,6 +42,7 @@ from crowdbot.plugin.for_sensors import (
     heights_of,
     meet,
 )
+from crowdbot.plugins.sensors.described_build import DescribedSensor
 from crowdbot.plugins.sensors.ultrasound import UltrasoundSpec
 
 _HALVINGS = 40
@@ -57,10 +57,10 @@ def zone_length(angle: Array, length: float, radius: float) -> Array:
     return np.where(sine <= 1.0 + _ROUNDING, reach, 0.0)
 
 
-class Ultrasound:
+class Ultrasound(DescribedSensor):
     """Rays on a regular grid of azimuth and elevation, centred on the axis.
 
-    The outermost rays are the zone's tangents at the sensor.
+    The outermost rays are the zone's tangents at the sensor, and ``angles`` are their azimuths.
     """
 
     def __init__(self, spec: UltrasoundSpec, noise: Sequence[NoiseGenerator] = ()) -> None:
@@ -86,10 +86,6 @@ class Ultrasound:
             tilt=self._range_model.tilt,
         )
         self._rays = grid_rays(self._grid) if self._range_model.tilted else NO_RAYS
-
-    def info(self) -> SensorInfo:
-        """Return the constant description; ``angles`` are the edges of the zone at the sensor."""
-        return self._info
 
     def read(self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator) -> Array:
         """Return the distance (1,) to the nearest object in the zone, m; inf if there is none."""
@@ -253,9 +249,4 @@ def _nearest_at_all(
     return nearest
 
 
-def build(
-    spec: UltrasoundSpec, noise: Sequence[NoiseGenerator], context: SensorContext
-) -> Ultrasound:
-    """Return a sonar from its spec and its noise generators."""
-    del context
-    return Ultrasound(spec, noise)
+build = Ultrasound.from_spec

@@ -17,6 +17,7 @@ import math
 import numpy as np
 
 from crowdbot.plugin import Array, Pose, Scene, SensorContext, SensorInfo, SimulationError, kernel
+from crowdbot.plugins.sensors.described_build import DescribedSensor
 from crowdbot.plugins.sensors.wheel_odometry import HolonomicOdometrySpec, WheelOdometrySpec
 
 #: Layout of the memory: offsets of three errors (rad) and of a reading of six numbers.
@@ -25,7 +26,7 @@ _SIZE = 15
 _NO_DRAWS = np.zeros(0)
 
 
-class WheelOdometry:
+class WheelOdometry(DescribedSensor):
     """Reading: x, y (m), yaw (rad, in [-pi, pi]), v (m/s), w (rad/s), and perhaps vy (m/s).
 
     The frame is that of the pose at the first reading; velocities are means since the last one.
@@ -61,10 +62,6 @@ class WheelOdometry:
             ),
             sees=False,
         )
-
-    def info(self) -> SensorInfo:
-        """Return the constant description."""
-        return self._info
 
     def read(
         self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator, memory: Array

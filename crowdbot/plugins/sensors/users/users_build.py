@@ -13,6 +13,7 @@ from abc import ABC, abstractmethod
 import numpy as np
 
 from crowdbot.plugin import Array, Pose, Scene, SensorContext, SensorInfo, SensorMessage
+from crowdbot.plugins.sensors.described_build import DescribedSensor
 from crowdbot.plugins.sensors.joystick_build import twist
 from crowdbot.plugins.sensors.users.users import FatiguedUserSpec, OneSwitchUserSpec, UserSpec
 from crowdbot.plugins.sensors.users.wish_build import Wish, full, wish
@@ -21,7 +22,7 @@ from crowdbot.plugins.sensors.users.wish_build import Wish, full, wish
 STARTED, TIME, V, W, HEAD = range(5)
 
 
-class SyntheticUser(ABC):
+class SyntheticUser(DescribedSensor, ABC):
     """Base of synthetic users; reading: (2,) v (m/s), w (rad/s)."""
 
     def __init__(
@@ -45,10 +46,6 @@ class SyntheticUser(ABC):
             random=random,
             sees=spec.sight > 0.0,
         )
-
-    def info(self) -> SensorInfo:
-        """Return the constant description."""
-        return self._info
 
     def read(
         self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator, memory: Array
