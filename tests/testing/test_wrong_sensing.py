@@ -208,7 +208,7 @@ class Noisy:
     """A lidar that draws although no noise is wanted."""
 
     def __init__(self, spec: RangeSensorSpec) -> None:
-        self._lidar = lidar2d(spec, [], context())  # type: ignore[arg-type]
+        self._lidar = lidar2d(spec, [], context())
 
     def info(self) -> SensorInfo:
         return replace(self._lidar.info(), random=True)

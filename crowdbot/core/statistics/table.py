@@ -71,7 +71,7 @@ class Table:
     """
 
     def __init__(self, results: Results) -> None:
-        self.runs = {(r.planner, r.suite, r.scenario, r.seed): r for r in results.runs}
+        self.runs = {(r.planner, _key(r)): r for r in results.runs}
         made = {(f.planner, (f.suite, f.scenario, f.seed)): f.error for f in results.failures}
         self.failures = {place: why for place, why in made.items() if place not in self.runs}
         places = [*self.runs, *self.failures]
@@ -306,6 +306,10 @@ def counts_of(outcome: NDArray[np.int8]) -> Counts:
     """Return the number of each outcome."""
     found = np.bincount(outcome, minlength=len(OUTCOMES))
     return Counts(**dict(zip(OUTCOMES, map(int, found), strict=True)))
+
+
+def _key(run: RunRow) -> Key:
+    return run.suite, run.scenario, run.seed
 
 
 def _draw(run: RunRow) -> str:

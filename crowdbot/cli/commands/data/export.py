@@ -196,9 +196,7 @@ def _data_set(to: ExportFormat, folder: Path, target: Path, robot: str | None) -
     if not runs:
         raise InputError(f"{folder}: no run in it has a recording")
     if to is ExportFormat.trajnet:
-        _whole(
-            target, lambda aside: aside.write_text(trajnet(_scenes(runs, robot)), encoding="utf-8")
-        )
+        _whole(target, lambda aside: _write(aside, trajnet(_scenes(runs, robot))))
         return
     if robot is not None:
         raise UsageError("--robot has no meaning for --to minari")
@@ -213,6 +211,10 @@ def _scenes(runs: Sequence[Path], robot: str | None) -> Iterator[tuple[Trajector
     for run in runs:
         with Recording(run / RECORDING) as opened:
             yield opened.trajectories(robot), opened.header.scenario
+
+
+def _write(out: Path, text: str) -> None:
+    out.write_text(text, encoding="utf-8")
 
 
 def _target(run: Path, to: ExportFormat) -> Path:
