@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import crowdbot.core.crowd.state as s
 from crowdbot.core.crowd.agents import ONWARD, PORTAL, Agents
 from crowdbot.core.crowd.contact.robot_contact import DISC, R_W, RVX, RVY
-from crowdbot.core.crowd.contact.solid import MOST_OVERLAP, OUTSIDE
+from crowdbot.core.crowd.contact.solid import LONGEST_STEP, MOST_OVERLAP, OUTSIDE
 from crowdbot.core.crowd.desired_acceleration import desired_acceleration, relaxation_time_of
 from crowdbot.core.crowd.groups import groups_of, hold_together
 from crowdbot.core.crowd.parameters import AgentParameters, Scratch, WorldParameters
@@ -104,7 +104,10 @@ class CrowdEngine:
         self._people = AgentParameters.of(
             agents, np.array(strength, np.float64)[agents.policy], _limits(made, agents, world)
         )
-        self._place = WorldParameters.of(world, float(np.max(agents.radius, initial=0.0)))
+        largest = float(np.max(agents.radius, initial=0.0))
+        touched = world.with_images(largest + LONGEST_STEP)
+        self._pillars = touched.pillars
+        self._place = WorldParameters.of(touched, largest)
         dt = self.ticks_per_decision * TICK
         self._steering = parts_of(world.steering)
         led = np.array([getattr(p, "commanded", False) for p in made], np.bool_)
@@ -387,7 +390,7 @@ class CrowdEngine:
     def _fixed(self, flat: Array) -> Array:
         """Return the discs (D, 3) that push: pillars, and images of people across the border."""
         if self.world.periodic_boundary is None:
-            return self.world.pillars
+            return self._pillars
         _, rows = s.view(flat)
         here, radius = rows[:, s.WAITING] == s.PRESENT, self.agents.radius
         people = np.column_stack([rows[:, [s.X, s.Y, s.VX, s.VY]], radius])[here]
@@ -395,7 +398,7 @@ class CrowdEngine:
         seen = images(
             people, self.world.periodic_boundary, reach, diagonal=not self.world.parity
         )  # fmt: skip
-        return np.concatenate([self.world.pillars, seen[:, [0, 1, 4]]])
+        return np.concatenate([self._pillars, seen[:, [0, 1, 4]]])
 
 
 def _alike(outline: Array, robots: int) -> Array:

@@ -169,7 +169,7 @@ def try_to_re_enter(
     """Try one point of the in-portal; start a new trip there if it is free.
 
     The point lies in the in-portal as the agent left the out-portal (`RulesRecord.keep_offset`), or
-    is drawn again in each attempt.
+    is drawn again in each attempt, as it is where something solid stands at the former.
     """
     traits = people.traits[i]
     if traits.at_goal == RETURN:
@@ -178,13 +178,18 @@ def try_to_re_enter(
     flow, radius, key, number = int(traits.flow), traits.radius, world.goal_key, int(traits.id)
     trip, attempt = int(agents[i].trip), int(agents[i].attempt)
     agents[i].attempt += 1.0
+    pillars = discs[: int(world.rules[0].pillars)]
+    u = counter_rng.uniform(key, number, trip, counter_rng.ENTRY, 2 * attempt)
+    v = counter_rng.uniform(key, number, trip, counter_rng.ENTRY, 2 * attempt + 1)
+    x, y = point_in(world.entrance[flow], radius, u, v)
     if world.rules[0].keep_offset != 0.0:
         u, v = _shares(world.out[flow], radius, agents[i].x, agents[i].y)
-    else:
-        u = counter_rng.uniform(key, number, trip, counter_rng.ENTRY, 2 * attempt)
-        v = counter_rng.uniform(key, number, trip, counter_rng.ENTRY, 2 * attempt + 1)
-    x, y = point_in(world.entrance[flow], radius, u, v)
+        ox, oy = point_in(world.entrance[flow], radius, u, v)
+        if traits.limit == 0.0 or is_off_walls(traits.limit, world, pillars, ox, oy):
+            x, y = ox, oy
     if not is_free(agents, i, people, robots, x, y):
+        return
+    if traits.limit > 0.0 and not is_off_walls(traits.limit, world, pillars, x, y):
         return
     agents[i].trip = trip + 1.0
     agents[i].jumps += 1.0

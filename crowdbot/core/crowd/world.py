@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
 from crowdbot.core.crowd.agents import PORTAL, Agents
 from crowdbot.core.crowd.groups import Cohesion
-from crowdbot.core.crowd.periodic_boundary import Box
+from crowdbot.core.crowd.periodic_boundary import Box, images
 from crowdbot.core.crowd.response.parameters import Human
 from crowdbot.core.crowd.routing.parameters import WayFinding
 from crowdbot.core.crowd.steering.parameters import Steering
@@ -103,3 +103,28 @@ class CrowdWorld:
                 f"agents use flow {flows.max()}, but the world has {len(self.entrance)} pairs of "
                 "portals; give agents routes, or the world entrance and out"
             )
+
+    def with_images(self, reach: float) -> CrowdWorld:
+        """Return a world whose walls and pillars are followed by their images across the border.
+
+        So that nobody wraps into what is solid on the other side. As the original engine has none,
+        there are none with ``parity``.
+
+        Args:
+            reach: only images closer than this to the floor, m.
+        """
+        box = self.periodic_boundary
+        if box is None or self.parity:
+            return self
+        discs = np.insert(self.pillars, [2, 2], 0.0, axis=1)
+        discs = images(discs, box, reach + float(np.max(self.pillars[:, 2], initial=0.0)))
+        middle = 0.5 * (self.walls[:, :2] + self.walls[:, 2:])
+        half = self.walls[:, 2:] - middle
+        longest = float(np.max(np.hypot(*half.T), initial=0.0))
+        lines = images(np.insert(np.hstack([middle, half]), 4, 0.0, axis=1), box, reach + longest)
+        walls = np.hstack([lines[:, :2] - lines[:, 2:4], lines[:, :2] + lines[:, 2:4]])
+        return replace(
+            self,
+            walls=np.concatenate([self.walls, walls]),
+            pillars=np.concatenate([self.pillars, discs[:, [0, 1, 4]]]),
+        )

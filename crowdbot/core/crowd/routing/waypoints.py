@@ -36,6 +36,8 @@ _SLOW = 0.25
 _LOOKS_EVERY, _NEAR_CORNER = 4, 1.0
 #: In place of a corner: a position to one side of an obstructing person.
 _ASIDE_OF_ALL = -1.0
+#: In place of a corner: the last one is passed, on the way to a goal in the margin of a solid.
+_PAST_THE_LAST = -2.0
 #: Its distance, m; reached within this, m; number of positions tried, with these draws.
 _STEP, _STEPPED, _SIDES, _SIDE_DRAWS = 1.0, 0.4, 4, 1 << 40
 #: On the way there: speed, m/s, and the time in which it is reached, s.
@@ -121,11 +123,8 @@ def _look(
     """Find agent i's waypoint: its goal, or the corner on the path to it."""
     if blocked:
         agents[i].detours += 1.0
-    if agents[i].corner == _ASIDE_OF_ALL:
-        dx, dy = agents[i].waypoint_x - agents[i].x, agents[i].waypoint_y - agents[i].y
-        if not blocked and math.hypot(dx, dy) > _STEPPED:
-            return
-        agents[i].corner = 0.0
+    if _keeps_on(agents, i, blocked, wider):
+        return
     v = int(agents[i].corner) - 1
     # A person on the way to a corner after which others follow does not see the goal before them.
     last = v < 0 or after[v] == TO_GOAL or not math.isfinite(left[v])
@@ -145,12 +144,26 @@ def _look(
     if w != v and (w < 0 or after[w] == TO_GOAL) and _sees_goal(agents, i, sight):
         _forget(agents, i)
         return
-    if w < 0:
+    if w < 0 and not found:
         _choose(agents, i, left, after, table, sight, -1, habits)
     if agents[i].corner == 0.0:
         _choose(agents, i, left, after, table, wider, -1, habits)
     if not found:
         _set_waypoint(agents, i, number, table, sight, habits)
+
+
+@kernel
+def _keeps_on(agents: People, i: int, blocked: bool, wider: Sight) -> bool:
+    """Return True if agent i goes on to what it aims at in place of a corner; if not, forget it."""
+    if agents[i].corner >= 0.0:
+        return False
+    if not blocked:
+        dx, dy = agents[i].waypoint_x - agents[i].x, agents[i].waypoint_y - agents[i].y
+        aside = agents[i].corner == _ASIDE_OF_ALL
+        if math.hypot(dx, dy) > _STEPPED if aside else _sees_goal(agents, i, wider):
+            return True
+    agents[i].corner = 0.0
+    return False
 
 
 @kernel
@@ -176,13 +189,16 @@ def _step_aside(agents: People, i: int, number: int, sight: Sight, habits: Habit
 def squeeze(agents: People, max_acceleration: Array) -> None:
     """Set the accelerations of people who step aside, as `find_waypoints` has decided.
 
-    They move slowly and may push others, who would not give way otherwise.
+    They move slowly and may push others, who would not give way otherwise. So do people at a goal
+    in the margin of a solid, from which their policy may keep them.
     """
     for i in range(agents.shape[0]):
-        if agents[i].corner != _ASIDE_OF_ALL or agents[i].waiting != PRESENT:
+        if agents[i].corner >= 0.0 or agents[i].waiting != PRESENT:
             continue
         dx, dy = agents[i].waypoint_x - agents[i].x, agents[i].waypoint_y - agents[i].y
         away = max(math.hypot(dx, dy), 1e-9)
+        if agents[i].corner == _PAST_THE_LAST and away > _NEAR_GOAL:
+            continue
         ax = (_SQUEEZE * dx / away - agents[i].vx) / _RELAXATION
         ay = (_SQUEEZE * dy / away - agents[i].vy) / _RELAXATION
         scale = min(1.0, max_acceleration[i] / max(math.hypot(ax, ay), 1e-9))
@@ -192,6 +208,13 @@ def squeeze(agents: People, max_acceleration: Array) -> None:
 @kernel
 def _sees_goal(agents: People, i: int, sight: Sight) -> bool:
     return is_clear(agents[i].x, agents[i].y, agents[i].goal_x, agents[i].goal_y, sight)
+
+
+@kernel
+def _shows_goal(agents: People, i: int, v: int, table: Array, sight: Sight) -> bool:
+    """Return True if agent i's goal is in sight of corner v; False if it is in a solid's margin."""
+    x, y = table[v, CORNER_X], table[v, CORNER_Y]
+    return is_clear(x, y, agents[i].goal_x, agents[i].goal_y, sight)
 
 
 @kernel
@@ -262,6 +285,10 @@ def _follow(
         if near and is_clear(x, y, ox, oy, wider):
             agents[i].corner, agents[i].aside = w + 1.0, 1.0
             return False
+    elif near and not _shows_goal(agents, i, v, table, sight) and _sees_goal(agents, i, wider):
+        _forget(agents, i)
+        agents[i].corner = _PAST_THE_LAST
+        return True
     bx, by = _beside(agents, i, number, v, agents[i].aside, table, habits)
     if not near and math.hypot(bx - x, by - y) < _REACHED:
         agents[i].aside = 0.0  # reached, and the next one is out of sight: go to the corner itself
