@@ -107,7 +107,7 @@ class CrowdWorld:
     def with_images(self, reach: float) -> CrowdWorld:
         """Return a world whose walls and pillars are followed by their images across the border.
 
-        So that nobody wraps into what is solid on the other side. As the original engine has none,
+        So that no one wraps into what is solid on the other side. As the original engine has none,
         there are none with ``parity``.
 
         Args:
