@@ -34,15 +34,19 @@ from crowdbot.plugins.crowd.cost_functions.force_build import (
 from crowdbot.plugins.crowd.cost_functions.social_forces_avoidance import SocialForcesAvoidanceSpec
 from crowdbot.plugins.crowd.cost_functions.wall_points_build import (
     SAME,
-    choose,
-    chosen,
-    leave_out_repeated,
+    clear_table,
+    is_known,
+    repeats,
 )
 
 _CLOSEST = 0.001  # m; nothing nearer exerts a force
-#: A force exp(_LOST) times weaker than a sum is lost when it is added, although the sum may shrink
-#: to _LESS of itself: 2^-60 is below 2^-55 times 2^-4.
-_LOST, _LESS = 60.0 * math.log(2.0), 2.0**-4
+#: A force exp(_LOST) times weaker than a sum is lost when it is added: half of its last bit is at
+#: least 2^-54 of it, and exponentials are exact to much less than the other half.
+_LOST = 55.0 * math.log(2.0)
+#: The bound of a sum is set this much below it, and again if the sum is so much above the bound.
+_SMALLER, _LARGER = 0.5, 16.0
+#: Equal points have equal squared distances, but for rounding and `SAME`.
+_BEFORE = 1.0 - 1e-6
 #: Walls are first looked at up to this many times their reach r.
 _REACHES = 60.0
 _SEEN = math.cos(math.radians(100.0))  # half the field of view
@@ -130,7 +134,7 @@ def _faces(s: int, agent: AgentRecord, walls: Rows[WallRecord], params: Pointer)
 
 @array_kernel
 def _lost_beyond(least: float, params: Pointer) -> float:
-    """Return the distance (m) beyond which walls are lost in rounding a sum near ``least``."""
+    """Return the distance (m) beyond which walls are lost in sums from ``least`` on."""
     own = as_record(params, _PARAMS)
     if least <= 0.0 or own.u0 <= 0.0:
         return math.inf
@@ -139,27 +143,42 @@ def _lost_beyond(least: float, params: Pointer) -> float:
 
 @array_kernel
 def _add_walls(
-    fx: float, fy: float, far: float, least: float, agent: AgentRecord, walls: Rows[WallRecord],
+    fx: float, fy: float, known: float, agent: AgentRecord, walls: Rows[WallRecord],
     wall_count: int, params: Pointer, work: Pointer,
 ) -> tuple[bool, float, float]:  # fmt: skip
-    """Add the forces of walls up to ``far``; not True if others might have changed the sum's bits.
+    """Add the forces of walls in turn; leave out those that are lost in the sum as it is then.
+
+    A wall that is left out may have the nearest point of a later one, which does not count then.
 
     Args:
-        least: as of `_lost_beyond`; 0: all walls are added.
+        known: walls farther than this are not given, m; may be infinite.
+
+    Returns:
+        True, and the sum, m/s^2; False if walls that are not given might change its bits.
     """
-    count, least = 0, _LESS * least
+    size = clear_table(0, wall_count, work)
+    # The sum is at least ``least`` in both directions, and beyond ``far`` walls are lost in that.
+    least = _SMALLER * min(abs(fx), abs(fy))
+    far = _lost_beyond(least, params)
+    left_out = math.inf
     for s in range(wall_count):
-        if walls[s].d2 <= far * far:
-            count = choose(count, s, work)
-    for k in range(leave_out_repeated(walls, count, work)):
-        wall = walls[chosen(k, work)]
-        if not in_range(wall.d2, agent.radius, params):
+        if far > known:
+            return False, fx, fy
+        d2 = walls[s].d2
+        if d2 > far * far:
+            left_out = min(left_out, d2)
             continue
-        push = _wall(-wall.nx, -wall.ny, math.sqrt(wall.d2), False, params)
+        if not in_range(d2, agent.radius, params) or is_known(walls, s, 0, size, work):
+            continue
+        if d2 > _BEFORE * left_out and repeats(walls, s):
+            continue
+        push = _wall(-walls[s].nx, -walls[s].ny, math.sqrt(d2), False, params)
         fx, fy = fx + push[0], fy + push[1]
-        if abs(fx) < least or abs(fy) < least:
-            return False, 0.0, 0.0
-    return True, fx, fy
+        now = min(abs(fx), abs(fy))
+        if now < least or now > _LARGER * least:
+            least = _SMALLER * now
+            far = _lost_beyond(least, params)
+    return far <= known, fx, fy
 
 
 @declared_kernel(PREPARE)
@@ -191,18 +210,11 @@ def _prepare(
                 push = _wall(-walls[s].nx, -walls[s].ny, math.sqrt(walls[s].d2), True, params)
                 fx, fy = fx + push[0], fy + push[1]
         return int(set_target(fx, fy, agent, work))
-    # The weaker, the smaller the sum has to be that it can change.
-    least = min(abs(fx), abs(fy))
-    own, far = as_record(params, _PARAMS), _lost_beyond(least, params)
+    own = as_record(params, _PARAMS)
     given = not 0.0 < agent.walls_within < own.range + own.from_surface * agent.radius
-    if given or far <= agent.walls_within:
-        done, gx, gy = _add_walls(fx, fy, far, least, agent, walls, wall_count, params, work)
-        if done:
-            return int(set_target(gx, gy, agent, work))
-    if not given:
-        return MORE_WALLS
-    _, gx, gy = _add_walls(fx, fy, math.inf, 0.0, agent, walls, wall_count, params, work)
-    return int(set_target(gx, gy, agent, work))
+    known = math.inf if given else agent.walls_within
+    done, fx, fy = _add_walls(fx, fy, known, agent, walls, wall_count, params, work)
+    return int(set_target(fx, fy, agent, work)) if done else MORE_WALLS
 
 
 def build(spec: SocialForcesAvoidanceSpec) -> CompiledCost:

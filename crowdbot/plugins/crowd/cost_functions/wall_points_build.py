@@ -17,6 +17,8 @@ SAME = 1e-9
 _PER_METRE = 1e6
 #: Points nearer than this to the border of their cell may be equal to one beside it, cells.
 _BORDER = 1.1 * SAME * _PER_METRE
+#: Fractional parts of multiples of these are spread evenly.
+_MIX_X, _MIX_Y = 0.6180339887498949, 0.7548776662466927
 #: With fewer walls all pairs are tried.
 _FEW = 16
 #: Entries of ``work`` before the chosen walls; forces need fewer.
@@ -42,21 +44,53 @@ def leave_out_repeated(walls: Rows[WallRecord], count: int, work: Pointer) -> in
 
     A hash table of cells finds equal points, so that time grows linearly with the number of walls.
     """
-    size, stay = 2, 0
+    if count <= _FEW:
+        return int(_leave_out_of_few(walls, count, work))
+    table, stay = _FIRST + count, 0
+    size = clear_table(table, count, work)
+    for k in range(count):
+        s = chosen(k, work)
+        if not is_known(walls, s, table, size, work):
+            stay = choose(stay, s, work)
+    return stay
+
+
+@array_kernel
+def clear_table(table: int, count: int, work: Pointer) -> int:
+    """Make an empty table for ``count`` walls at entry ``table`` of ``work``; return its size."""
+    size = 2
     while size < 2 * count:
         size *= 2
-    table = _FIRST + count
-    if count > _FEW:
-        for k in range(size):
-            work[table + k] = -1.0
+    for k in range(size):
+        work[table + k] = -1.0
+    return size
+
+
+@array_kernel
+def is_known(walls: Rows[WallRecord], s: int, table: int, size: int, work: Pointer) -> bool:
+    """Put wall s in the table; return True if its nearest point is in it, there or beside it."""
+    x, y = walls[s].nx * _PER_METRE, walls[s].ny * _PER_METRE
+    column, row = math.floor(x), math.floor(y)
+    known, k = _walk(walls, s, _place(float(column), float(row), size), table, size, work)
+    right, up = x - column, y - row  # how far it is in its cell, from 0 to 1
+    if min(min(right, up), 1.0 - max(right, up)) < _BORDER:
+        for i in range(3):
+            for j in range(3):
+                beside = _place(float(column + (i - 1)), float(row + (j - 1)), size)
+                known = known or _walk(walls, s, beside, table, size, work)[0]
+    work[table + k] = s
+    return bool(known)
+
+
+@array_kernel
+def _leave_out_of_few(walls: Rows[WallRecord], count: int, work: Pointer) -> int:
+    """Do the same by trying all pairs."""
+    table, stay = _FIRST + count, 0
     for k in range(count):
         s, known = chosen(k, work), False
-        if count > _FEW:
-            known = _note(walls, s, table, size, work)
-        else:
-            for earlier in range(k):
-                known = known or _are_one(walls, s, int(work[table + earlier]))
-            work[table + k] = s
+        for earlier in range(k):
+            known = known or _are_one(walls, s, int(work[table + earlier]))
+        work[table + k] = s
         if not known:
             stay = choose(stay, s, work)
     return stay
@@ -69,25 +103,19 @@ def _are_one(walls: Rows[WallRecord], s: int, other: int) -> bool:
 
 
 @array_kernel
-def _note(walls: Rows[WallRecord], s: int, table: int, size: int, work: Pointer) -> bool:
-    """Put wall s in the table; return True if its nearest point is in it, there or beside it."""
-    x, y = walls[s].nx * _PER_METRE, walls[s].ny * _PER_METRE
-    column, row = math.floor(x), math.floor(y)
-    known, k = _walk(walls, s, _place(column, row, size), table, size, work)
-    right, up = x - column, y - row  # how far it is in its cell, from 0 to 1
-    if min(right, up) < _BORDER or max(right, up) > 1.0 - _BORDER:
-        for i in range(3):
-            for j in range(3):
-                beside = _place(column + (i - 1), row + (j - 1), size)
-                known = known or _walk(walls, s, beside, table, size, work)[0]
-    work[table + k] = s
-    return bool(known)
+def _place(column: float, row: float, size: int) -> int:
+    """Return the first place in the table for a cell."""
+    mixed = column * _MIX_X + row * _MIX_Y
+    return int((mixed - math.floor(mixed)) * size) & (size - 1)
 
 
 @array_kernel
-def _place(column: float, row: float, size: int) -> int:
-    """Return the first place in the table for a cell."""
-    return int((int(column) * 73856093 ^ int(row) * 19349663) & (size - 1))
+def repeats(walls: Rows[WallRecord], s: int) -> bool:
+    """Return True if wall s's nearest point is that of one before it; tries all of them."""
+    known = False
+    for other in range(s):
+        known = known or _are_one(walls, s, other)
+    return known
 
 
 @array_kernel
