@@ -235,7 +235,7 @@ def engine_in(place: tuple[str, str], crowd: str, registry: Registry) -> CrowdEn
 
 
 def robot_at(kind: str, now: float) -> Array:
-    """Rows (R, 8) of the robot: none, or one in the middle, or one that goes to and fro."""
+    """Rows (R, 8) of the robot: none, or one in the middle, or one that goes there and back."""
     if kind == "none":
         return np.zeros((0, 8))
     x, vx = 0.5 * WIDE + 0.45, 0.0
