@@ -11,9 +11,11 @@ import logging
 import os
 import re
 import sys
+import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext, redirect_stdout
 from pathlib import Path
+from typing import TextIO
 
 from crowdbot.cli.app.command_names import command_names
 from crowdbot.cli.app.mishaps import left_by, tell_of_threads
@@ -21,7 +23,14 @@ from crowdbot.cli.app.streams import prepare_streams
 from crowdbot.core.registry.plugin_errors import telling_interrupts
 from crowdbot.core.support.gc_throttle import throttle_gc
 from crowdbot.core.support.skip_final_gc import end_without_collecting
-from crowdbot.errors import CrowdbotError, InputError, PluginError, SpecError, printable
+from crowdbot.errors import (
+    CrowdbotError,
+    InputError,
+    PluginError,
+    RecordingWarning,
+    SpecError,
+    printable,
+)
 
 __all__ = ["command_names", "main"]
 
@@ -38,7 +47,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     _start_log()
     tell_of_threads()
     try:
-        with telling_interrupts():
+        with telling_interrupts(), _plain_warnings():
             return _run(argv)
     except CrowdbotError as error:
         _say(_text(error))
@@ -115,6 +124,29 @@ _TELLING = frozenset(
     ("bundle", "campaign", "challenge-page", "evaluate", "export-urdf", "judge", "leaderboard",
      "lock", "report", "seal", "simulate", "validate", "verify", "view")
 )  # fmt: skip
+
+
+@contextmanager
+def _plain_warnings() -> Iterator[None]:
+    """Show warnings of recordings as messages, without places in crowdbot's own code."""
+    with warnings.catch_warnings():
+        usual = warnings.showwarning
+
+        def show(
+            message: Warning | str,
+            category: type[Warning],
+            filename: str,
+            lineno: int,
+            file: TextIO | None = None,
+            line: str | None = None,
+        ) -> None:
+            if issubclass(category, RecordingWarning):
+                _say(f"warning: {message}")
+            else:
+                usual(message, category, filename, lineno, file, line)
+
+        warnings.showwarning = show
+        yield
 
 
 def _wants_silence(words: Sequence[str]) -> bool:

@@ -3,6 +3,8 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import warnings
+from pathlib import Path
 
 import pytest
 
@@ -189,3 +191,16 @@ def test_who_adds_plugins_can_leave_out_the_installed_ones(command: str) -> None
     for name, one in {command: (top := load(command)), **getattr(top, "commands", {})}.items():
         options = {text for param in one.params for text in param.opts}
         assert ("--plugin" in options) == ("--no-plugins" in options), name
+
+
+def test_warnings_of_recordings_are_plain_lines(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "people.vsp"
+    file.write_text("1 - the number of splines\n2\n0 0 0 0\n6 0 100 0\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("default")
+        assert cli.main(["realism", "orca", "--reference", str(file), "--seeds", "1"]) == 1
+    first = capsys.readouterr().err.splitlines()[0]
+    taken = "positions are taken for metres: people walk at 1.5 m/s (median)"
+    assert first == f"warning: {file}: {taken}"

@@ -23,7 +23,7 @@ _NANOSECONDS = re.compile(
     r"^(.*?)(?<![a-z])(?:ns|nsecs?|nanos|nanosecs?|nanoseconds)$", re.IGNORECASE
 )
 _ORIENTATION = re.compile(
-    r"^(.*?)(?<![a-z])(?:orientation|quaternion|quat|rotation|rot|q|o)(?:[._/ ](?:[a-z]+_)?)?"
+    r"^(.*?)(?<![a-z])(?:orientation|ori|quaternion|quat|rotation|rot|q|o)(?:[._/ ](?:[a-z]+_)?)?"
     r"([xyzw])\s*(?:\[\s*\])?$",
     re.IGNORECASE,
 )

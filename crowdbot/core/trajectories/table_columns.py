@@ -23,8 +23,8 @@ FRAMES = ("frame", "fr", "frames", "frame_id", "frameid", "frame_number")
 #: Our name -> other names that are usual, in lower case; taken if ours is not there.
 _USUAL: Mapping[str, Sequence[str]] = {
     "t": ("time", "timestamp", "time_stamp", "stamp", "simsec", "simtime", *FRAMES),
-    "x": ("coordcentx", "startx", "pos_x", "position_x", "tx", "xcenter"),
-    "y": ("coordcenty", "starty", "pos_y", "position_y", "ty", "ycenter"),
+    "x": ("coordcentx", "startx", "pos_x", "position_x", "px", "tx", "xcenter"),
+    "y": ("coordcenty", "starty", "pos_y", "position_y", "py", "ty", "ycenter"),
     "vx": ("vel_x", "velocity_x", "v_x"),
     "vy": ("vel_y", "velocity_y", "v_y"),
     "theta": ("yaw", "heading"),
@@ -80,7 +80,7 @@ _ENDING = re.compile(
     re.IGNORECASE,
 )
 #: Columns that say nothing about the plane, or number the rows.
-_NEEDLESS = ("z", "tz", "pos_z", "point", "geometry", "", "index", "unnamed: 0")
+_NEEDLESS = ("z", "tz", "pos_z", "pz", "point", "geometry", "", "index", "unnamed: 0")
 _HEIGHT = re.compile(r"(?:^|[./_])position[./_]z$|^p_\w+_z$")
 #: Columns that say what moves, and what they say of people, in lower case.
 _KINDS = ("type", "object_type", "agent_type", "class", "label", "category", "classification")
@@ -462,7 +462,8 @@ def in_seconds(tables: Mapping[str, RawTable], frame_rate: float | None) -> Mapp
             rate = table.frame_rate
             if rate is None:
                 raise InputError(
-                    f"{table.name}: times are numbers of frames; frame_rate=25 says how many there "
+                    f"{table.name}: times are numbers of frames; a comment above the header, "
+                    "'# framerate: 25', or frame_rate=25 says how many there "
                     "are in a second"
                 )
         made[name] = table if rate is None else _without_frames(table, rate)

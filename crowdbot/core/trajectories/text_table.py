@@ -126,6 +126,7 @@ def split(path: Path, text: str) -> TextTable:
     if has_header:
         header = [cell.strip() for cell in rows[0]]
         rows, numbers = rows[1:], numbers[1:]
+        header = _in_groups(header, rows)
     else:
         header = _header_of_comments(comments, len(rows[0]), mark) or _of_tum(rows)
     assumed = not header and _of_petrack(comments, len(rows[0]))
@@ -147,6 +148,23 @@ def _nameless(width: int, known: Sequence[str]) -> str:
         "the table has no header row that names its columns: write one above it, such as "
         f"'{','.join(known[:4])}'"
     )
+
+
+def _in_groups(header: list[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """Return names with those of their groups: bagToCsv writes ``position,x,y,z,orientation,x,…``.
+
+    A group's own column has no cells, and loses its name. Names that stand there once are kept.
+    """
+    if len(set(header)) == len(header) or not rows:
+        return header
+    group, found = "", []
+    for i, name in enumerate(header):
+        if not any(row[i].strip() for row in rows):
+            group = name
+            found.append("")
+        else:
+            found.append(f"{group}.{name}" if group and header.count(name) > 1 else name)
+    return found
 
 
 def _plain_viswalk(lines: list[str]) -> list[str]:

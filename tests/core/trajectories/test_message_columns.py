@@ -52,6 +52,7 @@ def _table(path: Path, head: str, start: int = 0, sign: float = 1.0) -> Path:
         "timestamp_s,timestamp_ns,pos_x,pos_y,quat_x,quat_y,quat_z,quat_w",
         "stamp_sec,stamp_nanosec,position_x,position_y,orientation_x,orientation_y,"
         "orientation_z,orientation_w",
+        "sec,nsec,px,py,ori_x,ori_y,ori_z,ori_w",
     ],
 )
 def test_stamps_and_quaternions(tmp_path: Path, head: str, start: int) -> None:
@@ -125,6 +126,26 @@ def test_frames_of_cameras_and_drones_give_no_heading(
         run = READ.from_csv(tmp_path / "V102.txt", **BODY)
     assert run.robot is not None
     np.testing.assert_allclose(run.robot.theta, math.pi / 2)
+
+
+def test_groups_of_names_whose_columns_are_empty(tmp_path: Path) -> None:
+    head = (  # as bagToCsv writes it
+        "rosbagTimestamp,header,seq,stamp,secs,nsecs,frame_id,pose,pose,position,x,y,z,"
+        "orientation,x,y,z,w,twist,twist,linear,x,y,z\n"
+    )
+    rows = (
+        f"{1_700_000_000_000_000_000 + k},,{k},,1700000000,{k}00000000,odom,,,,{0.1 * k},2,0,"
+        f",0,0,{math.sin(0.3)},{math.cos(0.3)},,,,9,9,9\n"
+        for k in range(5)
+    )
+    (tmp_path / "odom.csv").write_text(head + "".join(rows))
+    with pytest.warns(RecordingWarning, match=r"rosbagTimestamp, seq, frame_id, .*not used"):
+        run = READ.from_csv(tmp_path / "odom.csv", **BODY)
+    assert run.robot is not None
+    np.testing.assert_allclose(run.t, 0.1 * np.arange(5), atol=1e-9)
+    np.testing.assert_allclose(run.robot.x, 0.1 * np.arange(5))
+    np.testing.assert_allclose(run.robot.y, 2.0)
+    np.testing.assert_allclose(run.robot.theta, 0.6)
 
 
 def test_a_heading_comes_before_a_quaternion(tmp_path: Path) -> None:

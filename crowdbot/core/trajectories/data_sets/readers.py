@@ -126,7 +126,8 @@ def eth_ucy_table(
                 raise InputError(f"{path}:{found.lines[0]}: {_OF_SDD}")
             raise InputError(
                 f"{path}:{found.lines[0]}: {seen}; 4 (frame, id, x, y) or 8 (obsmat.txt) are "
-                "wanted, or a comment that names others, such as '# id frame x/m y/m z/m'"
+                "wanted, or a comment that names others, such as '# id frame x/m y/m z/m'; tables "
+                "with times are read by from_csv, and by commands as .csv"
             )
         names = list(_PLAIN if width == 4 else _OBSMAT)
     cells = {n: [row[names.index(n)] for row in found.rows] for n in dict.fromkeys(names) if n}
