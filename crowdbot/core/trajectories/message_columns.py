@@ -12,7 +12,7 @@ from itertools import takewhile
 
 import numpy as np
 
-from crowdbot.core.trajectories.raw_table import Cells, RawTable
+from crowdbot.core.trajectories.raw_table import Cells, RawTable, as_number
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
@@ -27,7 +27,7 @@ _ORIENTATION = re.compile(
     r"([xyzw])\s*(?:\[\s*\])?$",
     re.IGNORECASE,
 )
-_CLOCK = re.compile(r"^(?!\s*\d{4}-\d\d-\d\d[T ]).*\d:\d\d")
+_STAMP = re.compile(r"\s*\d{4}-\d\d-\d\d[T ]")
 #: Seconds since 1970 from 1973 on; smaller ones count from any start.
 _SINCE_1970 = 1e8
 #: Least share of a ground robot's z axis that points up or down.
@@ -73,7 +73,7 @@ def _with_stamps(
 ) -> tuple[RawTable, set[int]]:
     """Join whole seconds and nanoseconds, unless a column has the time in numbers or stamps."""
     pairs = _pairs(table.header)
-    if "t" in made and not _is_clock(table.columns["t"]):
+    if "t" in made and not _is_text(table.columns["t"]):
         pairs = [pair for pair in pairs if pair[0] == made["t"]]
     read = []
     for seconds, rest in pairs:
@@ -96,12 +96,20 @@ def _with_stamps(
             raise InputError(f"{where}: a row has no {table.header[column]}")
     since_1970 = len(s) and float(np.max(s)) > _SINCE_1970
     t = s.astype(np.int64) * 10**9 + ns.astype(np.int64) if since_1970 else s + 1e-9 * ns
-    return replace(table, columns={**table.columns, "t": t}), {seconds, rest}
+    made_of = {**table.columns, "t": t}
+    return replace(table, columns=made_of, counts_frames=False), {seconds, rest}
 
 
-def _is_clock(cells: Cells) -> bool:
-    """Return True for texts such as ``2019/03/11/08:20:20``, which are not stamps of ISO 8601."""
-    return isinstance(cell := next(iter(cells), None), str) and bool(_CLOCK.match(cell))
+def _is_text(cells: Cells) -> bool:
+    """Return True for texts other than times: ``2019/03/11/08:20:20``, or the name of a frame."""
+    cell = next(iter(cells), None)
+    if not isinstance(cell, str) or _STAMP.match(cell):
+        return False
+    try:
+        as_number(cell)
+    except ValueError:
+        return True
+    return False
 
 
 def nanosecond_halves(header: Sequence[str]) -> set[int]:

@@ -153,7 +153,7 @@ def _nameless(width: int, known: Sequence[str]) -> str:
 def _in_groups(header: list[str], rows: Sequence[Sequence[str]]) -> list[str]:
     """Return names with those of their groups: bagToCsv writes ``position,x,y,z,orientation,x,…``.
 
-    A group's own column has no cells, and loses its name. Names that stand there once are kept.
+    A group's own column has no cells, and loses its name. Tables whose names differ are kept.
     """
     if len(set(header)) == len(header) or not rows:
         return header
@@ -163,7 +163,7 @@ def _in_groups(header: list[str], rows: Sequence[Sequence[str]]) -> list[str]:
             group = name
             found.append("")
         else:
-            found.append(f"{group}.{name}" if group and header.count(name) > 1 else name)
+            found.append(f"{group}.{name}" if group else name)
     return found
 
 

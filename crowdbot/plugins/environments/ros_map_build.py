@@ -184,7 +184,12 @@ def read_grey(file: Path, alpha: Alpha = "ignored") -> NDArray[np.float64]:
         return _read_pgm(file.name, content)
     if content[:4] == b"\x89PNG":
         return _read_png(file, content, alpha)
-    raise InputError(f"{file.name}: is neither a PGM (P2, P5) nor a PNG image; convert it to PNG")
+    remedy = (
+        "a map names its picture with image, and environment.image names another"
+        if file.suffix.lower() in (".yaml", ".yml")
+        else "convert it to PNG"
+    )
+    raise InputError(f"{file.name}: is neither a PGM (P2, P5) nor a PNG image; {remedy}")
 
 
 def _read_pgm(name: str, content: bytes) -> NDArray[np.float64]:

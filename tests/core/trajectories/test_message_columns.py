@@ -134,18 +134,18 @@ def test_groups_of_names_whose_columns_are_empty(tmp_path: Path) -> None:
         "orientation,x,y,z,w,twist,twist,linear,x,y,z\n"
     )
     rows = (
-        f"{1_700_000_000_000_000_000 + k},,{k},,1700000000,{k}00000000,odom,,,,{0.1 * k},2,0,"
-        f",0,0,{math.sin(0.3)},{math.cos(0.3)},,,,9,9,9\n"
+        f"{1_700_000_000_000_000_000 + k},,{k},,1700000000,{k}00000000,odom,,,,{0.08 * k},{0.06 * k},0,"
+        f",0,0,{math.sin(0.35)},{math.cos(0.35)},,,,9,9,9\n"
         for k in range(5)
     )
     (tmp_path / "odom.csv").write_text(head + "".join(rows))
-    with pytest.warns(RecordingWarning, match=r"rosbagTimestamp, seq, frame_id, .*not used"):
+    with pytest.warns(RecordingWarning, match=r"rosbagTimestamp, header.seq, .*not used"):
         run = READ.from_csv(tmp_path / "odom.csv", **BODY)
     assert run.robot is not None
     np.testing.assert_allclose(run.t, 0.1 * np.arange(5), atol=1e-9)
-    np.testing.assert_allclose(run.robot.x, 0.1 * np.arange(5))
-    np.testing.assert_allclose(run.robot.y, 2.0)
-    np.testing.assert_allclose(run.robot.theta, 0.6)
+    np.testing.assert_allclose(run.robot.x, 0.08 * np.arange(5))
+    np.testing.assert_allclose(run.robot.y, 0.06 * np.arange(5))
+    np.testing.assert_allclose(run.robot.theta, 0.7)
 
 
 def test_a_heading_comes_before_a_quaternion(tmp_path: Path) -> None:

@@ -98,7 +98,7 @@ def test_what_is_no_table_is_refused(tmp_path: Path, content: str, message: str)
 
 def test_frames_need_a_rate(tmp_path: Path) -> None:
     path = _written(tmp_path / "a.csv", "id frame x y z\n")
-    with pytest.raises(InputError, match="times are numbers of frames; .*frame_rate=25"):
+    with pytest.raises(InputError, match=r"times are numbers of frames; .*frame_rate=25"):
         READ.from_csv(agents=path)
     _check(READ.from_csv(agents=path, frame_rate=25))
 
