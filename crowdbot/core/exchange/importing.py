@@ -106,6 +106,7 @@ _ELSEWHERE = (
     ("features", f"a scenario reads GeoJSON with {_FLOOR}"),
     *((ending, f"a scenario reads a floor plan with {_FLOOR}")
       for ending in (".dxf", ".png", ".pgm")),
+    (".world", f"a world of Stage is not read: a map.yaml that names its bitmap is, with {_FLOOR}"),
     (".ifc", f"IFC {_NOT_READ}"),
     ("osm", f"OpenStreetMap's XML {_NOT_READ}"),
     *((tag, f"Menge's XML {_NOT_READ}") for tag in ("Experiment", "Project", "BFSM")),

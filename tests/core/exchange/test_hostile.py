@@ -146,6 +146,7 @@ def test_mutated_files_never_end_in_a_traceback(tmp_path: Path, name: str) -> No
             '{"robots": [], "resets": 5, "map": "a"}',
             "Arena-Rosnav's JSON is not read",
         ),
+        ("a.world", 'floorplan (bitmap "maze.png")', "a map.yaml that names its bitmap is"),
         ("a.osm", "<osm version='0.6'/>", "{kind: floor_plan, file: plan.wkt}"),
         ("a.ifc", "ISO-10303-21;", "IFC is not read"),
         ("a.vsp", "1 - the number of splines", "realism --reference a.vsp"),

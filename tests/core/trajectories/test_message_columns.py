@@ -134,8 +134,8 @@ def test_groups_of_names_whose_columns_are_empty(tmp_path: Path) -> None:
         "orientation,x,y,z,w,twist,twist,linear,x,y,z\n"
     )
     rows = (
-        f"{1_700_000_000_000_000_000 + k},,{k},,1700000000,{k}00000000,odom,,,,{0.08 * k},{0.06 * k},0,"
-        f",0,0,{math.sin(0.35)},{math.cos(0.35)},,,,9,9,9\n"
+        f"{1_700_000_000_000_000_000 + k},,{k},,1700000000,{k}00000000,odom,,,,"
+        f"{0.08 * k},{0.06 * k},0,,0,0,{math.sin(0.35)},{math.cos(0.35)},,,,9,9,9\n"
         for k in range(5)
     )
     (tmp_path / "odom.csv").write_text(head + "".join(rows))

@@ -36,15 +36,10 @@ _OBSMAT = ("frame", "id", "x", "z", "y", "vx", "vz", "vy")
 #: Median of what people move by in a second from which positions are hardly metres.
 _PIXELS = 10.0
 _PLAIN = ("frame", "id", "x", "y")
-#: Columns of the Stanford Drone Dataset, which hold boxes.
-_BOXES = (
-    "id", "xmin", "ymin", "xmax", "ymax", "frame", "lost", "occluded", "generated", "label",
-)  # fmt: skip
-_OF_SDD = (
-    f"10 columns, as in the Stanford Drone Dataset: {', '.join(_BOXES)}. These are boxes in "
-    "pixels: write rows of frame, id, and the middle (xmin + xmax)/2, (ymin + ymax)/2 of those "
-    "that are not lost; from_eth_ucy(path, frame_rate=30, homography=...) takes metres per pixel"
-)
+#: Columns of data sets that hold boxes, and where a person stands in one seen from aside.
+_SDD = "id, xmin, ymin, xmax, ymax, frame, lost, occluded, generated, label"
+_MOT = "frame, id, left, top, width, height, confidence, and three more"
+_FEET = "left + width/2, top + height"
 #: Names of columns in comments, in lower case -> ours.
 _OURS = {**dict.fromkeys(FRAMES, "frame"), **{n: n for n in ("id", "x", "y", "vx", "vy")},
          **dict.fromkeys(("persid", "personid", "ped_id"), "id")}  # fmt: skip
@@ -122,8 +117,8 @@ def eth_ucy_table(
         assumed = True
         if found.header or width not in (4, 8):
             seen = f"columns {', '.join(found.header)}" if found.header else f"{width} columns"
-            if not found.header and width == len(_BOXES) and len(set(found.rows[0][6:9])) <= 2:
-                raise InputError(f"{path}:{found.lines[0]}: {_OF_SDD}")
+            if not found.header and width == 10:
+                raise InputError(f"{path}:{found.lines[0]}: {_boxes(found.rows[0][-1])}")
             raise InputError(
                 f"{path}:{found.lines[0]}: {seen}; 4 (frame, id, x, y) or 8 (obsmat.txt) are "
                 "wanted, or a comment that names others, such as '# id frame x/m y/m z/m'; tables "
@@ -154,6 +149,17 @@ def eth_ucy_table(
     if not assumed:
         refuse_exchanged(table, frames)
     return table, notes
+
+
+def _boxes(last: str) -> str:
+    """Return what rows of ten columns are, by their last cell, and what to write instead."""
+    of_sdd = last.strip("\"'").isalpha()
+    names, middle = (_SDD, "(xmin + xmax)/2, (ymin + ymax)/2") if of_sdd else (_MOT, _FEET)
+    return (
+        f"10 columns, as in the {'Stanford Drone Dataset' if of_sdd else 'MOTChallenge'}: "
+        f"{names}. These are boxes in pixels: write rows of frame, id, {middle}; "
+        "from_eth_ucy(path, frame_rate=30, homography=...) takes metres per pixel, or a matrix"
+    )
 
 
 def _odd_speeds(

@@ -100,6 +100,9 @@ def test_rows_in_pixels(tmp_path: Path) -> None:
     boxes.write_text('0 892 1265 932 1304 0 0 0 0 "Biker"\n0 892 1265 932 1304 1 0 0 1 "Biker"\n')
     with pytest.raises(InputError, match=r"txt:1: .*Stanford Drone Dataset.*boxes in pixels"):
         READ.from_eth_ucy(boxes)
+    boxes.write_text("1,1,794.27,247.59,71.245,174.88,-1,-1,-1,-1\n")
+    with pytest.raises(InputError, match=r"MOTChallenge.*top \+ height; .*homography"):
+        READ.from_eth_ucy(boxes)
 
 
 @pytest.mark.parametrize(
