@@ -17,6 +17,7 @@ from multiprocessing.connection import Connection
 from typing import Any, NamedTuple
 
 from crowdbot.core.campaign.job import Job, JobOutcome
+from crowdbot.core.campaign.worker_memory import return_freed_memory
 from crowdbot.core.runs.outcome import Progress
 from crowdbot.core.support.skip_final_gc import end_without_collecting
 
@@ -59,6 +60,7 @@ def main(handle: int, parent: int) -> None:
         done = execute(job, line.report, line.hung)
         line.progress = None
         line.send(done)
+        return_freed_memory()
 
 
 class _Line:
