@@ -66,6 +66,18 @@ def test_vadere_sources_spawn_at_the_mean_rate_of_their_distribution(
     assert arrivals.items() <= list(streams.values())[1]["arrivals"].items()
 
 
+def test_vadere_people_wait_until_their_source_has_room(tmp_path: Path) -> None:
+    deck = json.loads((FILES / "vadere.scenario").read_text())
+    deck["scenario"]["topography"]["sources"][0]["spawnNumber"] = 400  # in 24 m²
+    file = tmp_path / "a.scenario"
+    file.write_text(json.dumps(deck))
+    found = imported(file)
+    stream = next(iter(document_of(found)["scenario"]["crowd"]["streams"].values()))
+    assert stream["arrivals"] == {"times": [0.0] * 400}
+    assert "count" not in stream
+    assert any("the others enter as soon as there is more" in e.note for e in found.report.entries)
+
+
 @pytest.mark.parametrize("newer", [False, True])
 def test_vadere_sources_of_cars_let_no_people_in(tmp_path: Path, newer: bool) -> None:
     deck = json.loads((FILES / "vadere.scenario").read_text())

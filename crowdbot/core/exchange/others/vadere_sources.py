@@ -9,7 +9,8 @@ from crowdbot.core.exchange.others.vadere_times import read_times
 from crowdbot.core.exchange.others.vadere_topography import Topography, take_ids, way_of
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable, number
-from crowdbot.core.exchange.scene import Data, free_name
+from crowdbot.core.exchange.scene import USUAL_RADIUS, Data, free_name
+from crowdbot.dsl.checks.spawns import most_points
 
 SOURCE = RowTable(
     "source",
@@ -49,6 +50,7 @@ def add_source(item: Item, into: Topography) -> None:
     if way[:-1]:
         stream["via"] = [area_of(into.targets[k]) for k in way[:-1]]
     stream |= _when(spawner, int(count), fields, report)
+    _let_wait(stream, item, into)
     take_ids(item, report)
     stream["at_destination"] = "leave" if into.absorbing[way[-1]] else "stop"
     if groups := _groups(item):
@@ -76,6 +78,17 @@ _SOURCE_NOTES = {
     "type": "the class of its spawner",
     "dynamicElementType": "people are the only kind here",
 }  # fmt: skip
+
+
+def _let_wait(stream: Data, item: Item, into: Topography) -> None:
+    """Let people for whom a source has no room at first enter as soon as it has, as Vadere does."""
+    radius = into.scene.crowd.get("body", {}).get("radius", USUAL_RADIUS)
+    room = most_points(tuple(stream["origin"]["size"]), radius, 2.0 * radius)
+    if not 0 < room < stream.get("count", 0):
+        return
+    stream["arrivals"] = {"times": [0.0] * min(stream.pop("count"), 10_000)}
+    note = f"there is room for {room} at once: the others enter as soon as there is more"
+    into.report.interpreted(item, "crowd.streams.arrivals", note)
 
 
 def _newer(item: Item, name: str, usual: float) -> float:
