@@ -9,6 +9,7 @@ import shlex
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -40,9 +41,15 @@ def run(words: list[str]) -> None:
     Raises:
         SystemExit: always, with the exit code.
     """
-    command = get_command(_app())
+    _whole(_is_narrow())(words, prog_name="crowdbot")
+
+
+@cache
+def _whole(narrow: bool) -> Any:
+    """Return the command line, for one width of the terminal; tests run hundreds of lines."""
+    command = get_command(_app(narrow))
     refuse_repetition(command)
-    command(words, prog_name="crowdbot")
+    return command
 
 
 @contextmanager
@@ -94,6 +101,12 @@ def load(name: str) -> Any:
     """Return the command of a module, with ``-v`` and ``-q`` added."""
     module, group = module_name(name), command_groups()[name]
     found = getattr(importlib.import_module(f"crowdbot.cli.commands.{group}.{module}"), module)
+    return _command(found, name, group, _is_narrow())
+
+
+@cache
+def _command(found: Any, name: str, group: str, narrow: bool) -> Any:
+    """Return a function, or a group of them, as a command, for one width of the terminal."""
     if not isinstance(found, typer.Typer):
         app = typer.Typer(**_SETTINGS)
         app.command(name=name)(found)
@@ -104,7 +117,7 @@ def load(name: str) -> Any:
         one.help = _unwrapped(one.help)
         if one.help and not one.short_help:  # otherwise click would truncate it
             one.short_help = one.help.partition("\n\n")[0]
-        if _is_narrow():
+        if narrow:
             one.rich_markup_mode = None
         taken = {text for param in one.params for text in param.opts}
         one.params += [p for p in _verbosity_params() if not taken & set(p.opts)]
@@ -185,9 +198,9 @@ _Version = Annotated[
 ]  # fmt: skip
 
 
-def _app() -> typer.Typer:
+def _app(narrow: bool) -> typer.Typer:
     settings = {**_SETTINGS, "add_completion": True}
-    if _is_narrow():
+    if narrow:
         settings["rich_markup_mode"] = None
     app = typer.Typer(cls=_Commands, no_args_is_help=True, **settings)
 
