@@ -327,13 +327,13 @@ class CrowdEngine:
         return np.where(present[:, np.newaxis], rows[:, s.AX : s.AY + 1], 0.0)
 
     def _decide(self, flat: Array, robots: Array, outlines: Array) -> None:
-        (_, rows), people = s.view(flat), s.people_in(flat)
+        _, rows = s.view(flat)
         if not self.world.robot_visible:
             robots = np.where(_MOTION, 0.0, robots)
         if self._router is not None:
             number = int(flat[s.TICK]) // self.ticks_per_decision
-            self._router.find(people, self.ticks_per_decision * TICK, number)
-        decisions = list[tuple[NDArray[np.bool_], Array]]()
+            self._router.find(s.people_in(flat), self.ticks_per_decision * TICK, number)
+        decisions: list[tuple[NDArray[np.bool_], Array]] = []
         for group in self.groups if len(robots) else self._groups_alone:
             shown = robots[:, _SEEN] if group.sees_robot and len(robots) else _NOT_SHOWN
             view = self._view(flat, rows, group.members, shown)
@@ -347,23 +347,23 @@ class CrowdEngine:
                 desired = self._steering.steer(view, relaxation_time_of(group.policy), desired)
             np.copyto(rows[:, s.AX : s.AY + 1], desired, where=decides[:, np.newaxis])
         if self._router is not None:
-            squeeze(people, self.agents.max_acceleration)
+            squeeze(s.people_in(flat), self.agents.max_acceleration)
         if self._cohesion is not None and len(self._members):
             hold_together(
-                people, self._members, self._ends, self.agents.max_acceleration,
+                s.people_in(flat), self._members, self._ends, self.agents.max_acceleration,
                 self._place.boundary, self._cohesion,
             )  # fmt: skip
-        self._evade(flat, people, robots, outlines)
+        self._evade(flat, robots, outlines)
         for decides, desired in decisions:  # nothing else changes what those want who are led
             np.copyto(rows[:, s.AX : s.AY + 1], desired, where=decides[:, np.newaxis])
 
-    def _evade(self, flat: Array, people: s.People, robots: Array, outlines: Array) -> None:
+    def _evade(self, flat: Array, robots: Array, outlines: Array) -> None:
         """Change desired accelerations of people who have noticed robots, under any policy."""
         if not len(robots):
             return
         now = float(flat[s.TICK]) * TICK
         evade_robots(
-            people, self.agents.radius, self.heeds_robots, self.agents.late, self.room,
+            s.people_in(flat), self.agents.radius, self.heeds_robots, self.agents.late, self.room,
             self.agents.preferred_speed, robots, outlines, self.evades, now,
         )  # fmt: skip
 

@@ -82,7 +82,9 @@ class CrowdSystem(LeafSystem):
             for k in range(count)
         ]
         initial = engine.initial_state(count)
-        self._news = [s.TRIPS, *(s.felt_at(initial, k, e) for k in range(count) for e in _NEWS)]
+        news = [s.TRIPS, *(s.felt_at(initial, k, e) for k in range(count) for e in _NEWS)]
+        self._news = np.array(news)  # numpy converts a list at each use
+        self._leaving = [k for k in range(count) if self._endings[k].leaves]
         crowd, events = self.DeclareDiscreteState(initial), self.DeclareDiscreteState(1 + count)
         self.DeclareStateOutputPort(ports.CROWD_STATE, crowd)
         self.DeclareStateOutputPort(ports.EVENTS, events)
@@ -117,11 +119,11 @@ class CrowdSystem(LeafSystem):
 
     def _take_out(self, crowd: Array) -> None:
         """Let robots that have left since the last tick feel nothing any more."""
-        for k in self._here.tolist():
-            if self._endings[k].gone:
-                felt, _ = s.contact_with(crowd, k)
-                felt[[s.ROBOT_FX, s.ROBOT_FY, s.ROBOT_TORQUE]] = 0.0
-                self._here = self._here[self._here != k]
+        for k in [k for k in self._leaving if self._endings[k].gone]:
+            felt, _ = s.contact_with(crowd, k)
+            felt[[s.ROBOT_FX, s.ROBOT_FY, s.ROBOT_TORQUE]] = 0.0
+            self._here = self._here[self._here != k]
+            self._leaving.remove(k)
 
     def _advance(self, crowd: Array) -> None:
         here, all_here = self._here, len(self._here) == len(self._rows)

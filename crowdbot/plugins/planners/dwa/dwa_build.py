@@ -130,9 +130,9 @@ class Dwa:
     def step(self, obs: Observation) -> Command:
         """Return the next command, and draw where it leads; zero at the goal."""
         command = self._command(obs)
-        now = (command.v, command.w, command.vy)
         turning, steps = round(self._spec.turn_time / STEP), round(self._spec.horizon / STEP)
-        rows = np.tile(now, (max(steps, 1), 1))
+        rows = np.empty((max(steps, 1), 3))
+        rows[:] = command.v, command.w, command.vy
         rows[turning:, 1] = 0.0
         obs.draw("plan", driven(rows, STEP))
         return command

@@ -16,6 +16,9 @@ def driven(velocities: Array, step: float) -> Array:
     """
     v, w, vy = velocities.T
     yaw = np.cumsum(w) * step
-    x = np.cumsum(v * np.cos(yaw) - vy * np.sin(yaw)) * step
-    y = np.cumsum(v * np.sin(yaw) + vy * np.cos(yaw)) * step
-    return np.column_stack([x, y])
+    c, s = np.cos(yaw), np.sin(yaw)
+    path = np.empty((len(yaw), 2))
+    np.cumsum(v * c - vy * s, out=path[:, 0])
+    np.cumsum(v * s + vy * c, out=path[:, 1])
+    path *= step
+    return path
