@@ -33,7 +33,7 @@ from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.routing.parameters import WayFinding
 from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.sensing.depth_renderer import DepthRenderer
-from crowdbot.core.sensing.raycast_columns import RayGrid
+from crowdbot.core.sensing.ray_grid import RayGrid
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.dsl.scenario.steering import SteeringSpec
 from crowdbot.plugin import Pinhole, PolicyFactory

@@ -11,7 +11,7 @@ from crowdbot.plugins.crowd.cost_functions.goal_reaching_force_build import buil
 from crowdbot.plugins.crowd.policies.replay import ReplaySpec
 from crowdbot.plugins.crowd.policies.replay_build import build as build_policy
 from crowdbot.plugins.environments.corridor import CorridorSpec
-from crowdbot.plugins.environments.corridor_build import build as build_environment
+from crowdbot.plugins.environments.place_build import build as build_environment
 from crowdbot.plugins.metrics.risk import RiskSpec
 from crowdbot.plugins.metrics.risk_build import Risk
 from crowdbot.plugins.noise.offset import OffsetSpec

@@ -15,7 +15,7 @@ from crowdbot.core.sensing.appearance_model import gaits
 from crowdbot.core.sensing.body_model import PARTS
 from crowdbot.core.sensing.mount import mount_pose, mount_tilt
 from crowdbot.core.sensing.other_robots import OtherRobot
-from crowdbot.core.sensing.raycast_columns import RayGrid
+from crowdbot.core.sensing.ray_grid import RayGrid
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.support.records import record_type, rows_of
 from crowdbot.core.types.robot import RobotModel

@@ -227,7 +227,7 @@ def render_depth(
         slope, cos_azimuth: (H,), (W,) as in `RenderPass`.
         cos, sin: (W,) of the columns' azimuths.
         walls, wall_heights, discs: (S, 4), (S, 2), (D, 5) as in
-            `crowdbot.core.sensing.raycast_columns.Obstacles`.
+            `crowdbot.core.sensing.ray_grid.Obstacles`.
         order: (S,) the walls, about nearest first.
         rays, edges, faces: scratch as in `RenderPass`.
         image: (H, W) result; whole numbers only if the lens has steps.

@@ -19,7 +19,7 @@ from crowdbot.core.types.arrays import Array, Indices, Mask
 #: rounding decides nothing.
 _MARGIN = 1e-6
 #: An end this near to another wall touches it, as a share of its own wall's length; rays meet walls
-#: a little beyond their ends, see `crowdbot.core.sensing.raycast_columns.OVERLAP`.
+#: a little beyond their ends, see `crowdbot.core.sensing.ray_grid.OVERLAP`.
 _TOUCH = 1e-12
 #: Largest number of walls that hide others, and of places per wall where two of them touch.
 _MOST_HIDERS, _JOINTS = 256, 4

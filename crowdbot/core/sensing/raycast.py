@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
-from crowdbot.core.sensing.raycast_columns import OVERLAP, PARALLEL
+from crowdbot.core.sensing.ray_grid import OVERLAP, PARALLEL
 from crowdbot.core.support.compiling.compile import array_kernel
 from crowdbot.core.types.arrays import Array
 

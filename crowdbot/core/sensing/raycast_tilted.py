@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
+from crowdbot.core.sensing.ray_grid import RayGrid
 from crowdbot.core.sensing.raycast import (
     cylinder_incidence,
     hit_cylinder,
@@ -22,7 +23,6 @@ from crowdbot.core.sensing.raycast import (
     segment_gap,
     wall_incidence,
 )
-from crowdbot.core.sensing.raycast_columns import RayGrid
 from crowdbot.core.support.compiling.compile import array_kernel, kernel
 from crowdbot.core.types.arrays import Array
 

@@ -13,8 +13,9 @@ from crowdbot.core.sensing.appearance_model import gaits, heights, place_looks, 
 from crowdbot.core.sensing.body_model import DISC_COLUMNS, PARTS, place_people
 from crowdbot.core.sensing.depth_renderer import DepthRenderer
 from crowdbot.core.sensing.other_robots import OtherRobot, RobotSurfaces
+from crowdbot.core.sensing.ray_grid import Obstacles, RayGrid
 from crowdbot.core.sensing.raycast import cast_rays
-from crowdbot.core.sensing.raycast_columns import Obstacles, RayGrid, cast_columns
+from crowdbot.core.sensing.raycast_columns import cast_columns
 from crowdbot.core.sensing.raycast_tilted import cast_tilted_rays
 from crowdbot.core.sensing.walls_near import WallsNear, in_scene
 from crowdbot.core.support.immutable import immutable, immutable_fields

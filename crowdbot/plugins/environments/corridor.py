@@ -76,6 +76,7 @@ class CorridorSpec(EnvironmentSpec):
 
 CORRIDOR = Component(
     spec=CorridorSpec,
+    build="crowdbot.plugins.environments.place_build:build",
     summary="straight corridor, with pillars or without; people walk through its ends into portals",
     examples=(
         {},

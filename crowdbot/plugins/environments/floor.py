@@ -77,6 +77,7 @@ def _points(floor: FloorSpec) -> list[tuple[str, Point]]:
 
 FLOOR = Component(
     spec=FloorSpec,
+    build="crowdbot.plugins.environments.place_build:build",
     summary="rectangle with free walls, blocks and pillars; fenced, open or a torus",
     examples=(
         {

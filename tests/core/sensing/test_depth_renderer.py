@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from crowdbot.core.sensing.depth_renderer import DepthRenderer
-from crowdbot.core.sensing.raycast_columns import DEEPEST, RayGrid
+from crowdbot.core.sensing.ray_grid import DEEPEST, RayGrid
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.plugin import Pinhole
 from tests.core.sensing.sensing_worlds import scene_of, world

@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crowdbot.core.geometry.rough_angle import rough_angle
-from crowdbot.core.sensing.raycast_columns import DEEPEST, RayGrid, rough_half
+from crowdbot.core.sensing.ray_columns import rough_half
+from crowdbot.core.sensing.ray_grid import DEEPEST, RayGrid
 from crowdbot.core.sensing.scene import Scene
 from tests.core.sensing.sensing_worlds import scene_of, world
 from tests.examples import costly

@@ -9,7 +9,7 @@ import pytest
 
 from crowdbot.core.sensing import walls_near as module
 from crowdbot.core.sensing.depth_renderer import DepthRenderer
-from crowdbot.core.sensing.raycast_columns import RayGrid
+from crowdbot.core.sensing.ray_grid import RayGrid
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sensing.walls_near import WallsNear, in_scene
 from crowdbot.core.types.arrays import Array

@@ -16,7 +16,7 @@ from crowdbot.core.sim.control.kinematic import obstacles
 from crowdbot.core.types.sensor import Pinhole
 from crowdbot.plugin import EnvironmentParts, Pose
 from crowdbot.plugins.environments.floor import FloorSpec
-from crowdbot.plugins.environments.floor_build import build
+from crowdbot.plugins.environments.place_build import build
 from tests.core.sim.sim_worlds import registry, scenario
 from tests.core.sim.test_obstacles import BODY, drive
 

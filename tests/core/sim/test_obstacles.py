@@ -15,7 +15,7 @@ from crowdbot.core.sim.plant import add_plant, place_robot
 from crowdbot.core.sim.robot_state import RobotStateSystem
 from crowdbot.plugin import EnvironmentParts, Pose
 from crowdbot.plugins.environments.floor import FloorSpec
-from crowdbot.plugins.environments.floor_build import build
+from crowdbot.plugins.environments.place_build import build
 from tests.core.sim.sim_worlds import registry, scenario
 
 BODY = 0.178

@@ -5,7 +5,7 @@ import pytest
 
 from crowdbot.plugin import Rectangle
 from crowdbot.plugins.environments.corridor import CorridorSpec
-from crowdbot.plugins.environments.corridor_build import build
+from crowdbot.plugins.environments.place_build import build
 
 PORTALS = {"a": Rectangle(x=(-1.0, 0.0), y=(-5.0, 5.0)), "b": Rectangle(x=(50.0, 51.0), y=(-5, 5))}
 

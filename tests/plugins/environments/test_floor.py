@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from crowdbot.plugins.environments.floor import FLOOR, BlockSpec, FloorSpec
-from crowdbot.plugins.environments.floor_build import build
+from crowdbot.plugins.environments.place_build import build
 
 AREA = {"x": (0.0, 20.0), "y": (-5.0, 5.0)}
 SQUARE = {"corners": [[0, 0], [4, 0], [4, 4], [0, 4]]}
