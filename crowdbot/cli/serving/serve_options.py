@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import secrets
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from crowdbot.core.live.step_policy import StepPolicy
     from crowdbot.core.recording.watcher import Watcher
     from crowdbot.core.runs.run_record import RunRecord
+
+
+#: Opens a server for external programs.
+_Server = Callable[["LiveSession", "StepPolicy", "Listen"], "LiveConnection"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,44 +79,39 @@ def step_policy_of(
     )
 
 
-@contextmanager
 def listening(
     session: LiveSession, policy: StepPolicy, listen: Listen
-) -> Iterator[list[LiveConnection]]:
+) -> AbstractContextManager[list[LiveConnection]]:
     """Open the servers for external programs; they are closed when the context ends.
 
     Raises:
         MissingLibraryError: the extra ``live`` is not installed.
         InputError: the address cannot be had.
     """
-    with ExitStack() as stack:
-        first = _rosbridge if listen.connect is None else _connected
-        connections: list[LiveConnection] = [first(session, policy, listen)]
-        stack.callback(connections[0].close)
-        if listen.zenoh is not None:
-            connections.append(_zenoh(session, policy, listen.zenoh, listen))
-            stack.callback(connections[-1].close)
-        if listen.foxglove is not None:
-            connections.append(_foxglove(session, policy, listen, listen.foxglove))
-            stack.callback(connections[-1].close)
-        yield connections
+    first = _rosbridge if listen.connect is None else _connected
+    return _opened(session, policy, listen, [first])
 
 
-@contextmanager
 def listening_also(
     session: LiveSession, listen: Listen, *, rosbridge: bool
-) -> Iterator[list[LiveConnection]]:
+) -> AbstractContextManager[list[LiveConnection]]:
     """Open further servers beside a person's page; they are closed when the context ends."""
     from crowdbot.core.live.step_policy import StepPolicy
 
     policy = StepPolicy(rate=1.0)
+    return _opened(session, policy, listen, [_rosbridge] * rosbridge)
+
+
+@contextmanager
+def _opened(
+    session: LiveSession, policy: StepPolicy, listen: Listen, first: Sequence[_Server]
+) -> Iterator[list[LiveConnection]]:
+    """Open the first servers, and those that the options name."""
+    more = {_zenoh: listen.zenoh, _foxglove: listen.foxglove}
     with ExitStack() as stack:
         connections: list[LiveConnection] = []
-        if rosbridge:
-            connections.append(_rosbridge(session, policy, listen))
-            stack.callback(connections[-1].close)
-        if listen.zenoh is not None:
-            connections.append(_zenoh(session, policy, listen.zenoh, listen))
+        for server in (*first, *(s for s, place in more.items() if place is not None)):
+            connections.append(server(session, policy, listen))
             stack.callback(connections[-1].close)
         yield connections
 
@@ -133,18 +132,16 @@ def _connected(session: LiveSession, policy: StepPolicy, listen: Listen) -> Live
     return connection
 
 
-def _foxglove(
-    session: LiveSession, policy: StepPolicy, listen: Listen, port: int
-) -> LiveConnection:
+def _foxglove(session: LiveSession, policy: StepPolicy, listen: Listen) -> LiveConnection:
     needs("live", "foxglove")
-    from crowdbot.core.live.admission import Admission
+    from crowdbot.core.live.admission import Admission, is_loopback
     from crowdbot.core.live.foxglove.server import FoxgloveServer
 
-    if not _is_this_machine(listen.host):
+    if not is_loopback(listen.host):
         raise UsageError("--foxglove knows no token: it listens on this machine only")
     admission = Admission(server="foxglove", origins=listen.origins)
     connection = FoxgloveServer(
-        session, listen.host, port, _services(session), policy.epoch, admission
+        session, listen.host, listen.foxglove or 0, _services(session), policy.epoch, admission
     )
     _say(f"foxglove: ws://{listen.host}:{connection.port}")
     return connection
@@ -154,22 +151,14 @@ def _topics(session: LiveSession) -> str:
     return ", ".join(session.commands)
 
 
-def _is_this_machine(host: str) -> bool:
-    from crowdbot.core.live.admission import is_loopback
-
-    return is_loopback(host)
-
-
-def _zenoh(
-    session: LiveSession, policy: StepPolicy, endpoint: str, listen: Listen
-) -> LiveConnection:
+def _zenoh(session: LiveSession, policy: StepPolicy, listen: Listen) -> LiveConnection:
     needs("ros2", "zenoh")
     from crowdbot.core.live.zenoh_connection import Network, ZenohConnection
 
     connection = ZenohConnection(
         session,
         Network(
-            endpoint=endpoint,
+            endpoint=listen.zenoh or "",
             router=listen.zenoh_router,
             domain=listen.domain,
             distro=listen.distro.value,
@@ -179,7 +168,7 @@ def _zenoh(
         external_clock=policy.external_clock,
     )
     role = "router at" if listen.zenoh_router else "connected to"
-    _say(f"ROS 2 ({listen.distro.value}, domain {listen.domain}): zenoh, {role} {endpoint}")
+    _say(f"ROS 2 ({listen.distro.value}, domain {listen.domain}): zenoh, {role} {listen.zenoh}")
     return connection
 
 

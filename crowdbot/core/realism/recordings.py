@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from crowdbot.core.realism.tracks import CorridorTracks, NothingToCompareError, tracks_of
+from crowdbot.core.realism.tracks import CorridorTracks, of_files, tracks_of
 from crowdbot.core.recording.recording import Recording
 from crowdbot.core.trajectories.bag.tables import people_topics
 from crowdbot.core.trajectories.trajectories import Trajectories
@@ -55,16 +55,7 @@ def read_runs(files: Sequence[Path]) -> tuple[list[CorridorTracks], list[str]]:
     Raises:
         InputError: a recording cannot be read, or all are left out.
     """
-    tracks: list[CorridorTracks] = []
-    without: list[str] = []
-    for file in files:
-        try:
-            tracks.append(tracks_of(_run(file), str(file)))
-        except NothingToCompareError as error:
-            without.append(str(error))
-    if not tracks:
-        raise InputError(without[0])
-    return tracks, without
+    return of_files(files, lambda file: [tracks_of(_run(file), str(file))])
 
 
 def _bag(path: Path, topic: str | None = None) -> Trajectories:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +14,8 @@ from crowdbot.core.realism.bins import DT, RATE, WINDOW
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
+
+T = TypeVar("T")
 
 #: Share of a recording dropped at its start and its end, when people come and go.
 _MARGIN = 0.15
@@ -26,6 +31,24 @@ _LONG = 20.0
 
 class NothingToCompareError(InputError):
     """A recording has no walking people, or is too short."""
+
+
+def of_files(files: Sequence[Path], read: Callable[[Path], list[T]]) -> tuple[list[T], list[str]]:
+    """Return all that is read from files, and why others have nothing to compare.
+
+    Raises:
+        InputError: a file cannot be read, or all have nothing to compare.
+    """
+    parts: list[T] = []
+    without: list[str] = []
+    for file in files:
+        try:
+            parts += read(file)
+        except NothingToCompareError as error:
+            without.append(str(error))
+    if not parts:
+        raise InputError(without[0])
+    return parts, without
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from crowdbot.core.geometry.footprint import Footprint
 from crowdbot.core.realism.near_robots.clip import RATE, Clip, clip_from_arrays, clip_of
 from crowdbot.core.realism.near_robots.encounters import BODY
-from crowdbot.core.realism.tracks import NothingToCompareError
+from crowdbot.core.realism.tracks import of_files
 from crowdbot.core.recording.recording import Recording
 from crowdbot.core.trajectories.own_recordings import columns_of
 from crowdbot.core.trajectories.raw_table import RawTable
@@ -69,16 +69,7 @@ def clips_of_runs(files: Sequence[Path]) -> tuple[list[Clip], list[str]]:
     Raises:
         InputError: a recording cannot be read, or all are left out.
     """
-    clips: list[Clip] = []
-    without: list[str] = []
-    for file in files:
-        try:
-            clips += clips_of_run(file)
-        except NothingToCompareError as error:
-            without.append(str(error))
-    if not clips:
-        raise InputError(without[0])
-    return clips, without
+    return of_files(files, clips_of_run)
 
 
 def _table(path: Path) -> Clip:
