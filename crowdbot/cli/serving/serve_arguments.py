@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from crowdbot.cli.shared.option import option
+
 
 class ClockChoice(StrEnum):
     """Source of simulated time."""
@@ -42,15 +44,12 @@ Token = Annotated[
     str | None,
     typer.Option(help="Token that clients must give; default on the network: a new one."),
 ]
-Connect = Annotated[
-    str | None, typer.Option(metavar="ws://HOST:PORT", help="Be a client of this rosbridge server.")
-]
+Connect = Annotated[str | None, option("ws://HOST:PORT", "Be a client of this rosbridge server.")]
 Stamped = Annotated[
     bool, typer.Option("--stamped", help="With --connect: commands are TwistStamped.")
 ]
 Zenoh = Annotated[
-    str | None,
-    typer.Option(metavar="tcp/HOST:PORT", help="ROS 2 topics, too, through this zenoh router."),
+    str | None, option("tcp/HOST:PORT", "ROS 2 topics, too, through this zenoh router.")
 ]
 ZenohRouter = Annotated[
     bool, typer.Option("--zenoh-router", help="Be the zenoh router at that endpoint.")
@@ -62,28 +61,14 @@ Foxglove = Annotated[
     typer.Option(min=0, max=65535, metavar="PORT", help="A live view for Foxglove as well."),
 ]
 AllowOrigin = Annotated[
-    list[str] | None,
-    typer.Option(
-        metavar="ORIGIN",
-        help="Admit pages of this website, SCHEME://HOST; repeatable.",
-    ),
+    list[str] | None, option("ORIGIN", "Admit pages of this website, SCHEME://HOST; repeatable.")
 ]
-Rate = Annotated[
-    float | None,
-    typer.Option(metavar="FACTOR", help="Keep to real time, times FACTOR; else lockstep."),
-]
+Rate = Annotated[float | None, option("FACTOR", "Keep to real time, times FACTOR; else lockstep.")]
 Clock = Annotated[ClockChoice, typer.Option(help="Where simulated time comes from.")]
-Budget = Annotated[
-    float, typer.Option(metavar="SECONDS", help="Lockstep: how long a step waits for a command.")
-]
+Budget = Annotated[float, option("SECONDS", "Lockstep: how long a step waits for a command.")]
 Missed = Annotated[MissedChoice, typer.Option(help="What a step without a command does.")]
-Hold = Annotated[
-    float, typer.Option(metavar="SECONDS", help="Real time: how long a command counts.")
-]
-Wait = Annotated[
-    float | None,
-    typer.Option(metavar="SECONDS", help="Time to wait for a client; default: no limit."),
-]
+Hold = Annotated[float, option("SECONDS", "Real time: how long a command counts.")]
+Wait = Annotated[float | None, option("SECONDS", "Time to wait for a client; default: no limit.")]
 Epoch = Annotated[int, typer.Option(min=0, metavar="SECONDS", help="Time at which stamps begin.")]
 RosVersion = Annotated[int, typer.Option(min=1, max=2, help="ROS 1 or ROS 2 messages.")]
 PlannerName = Annotated[str, typer.Option(help="Name of the planner that drives.")]

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import option
 from crowdbot.errors import InputError
 
 if TYPE_CHECKING:
@@ -18,14 +17,11 @@ if TYPE_CHECKING:
     from crowdbot.dsl.suite.expand import Expansion
 
 Accept = Annotated[
-    list[str] | None,
-    typer.Option(metavar="NAME", help="Compare although bundles differ in this; repeatable."),
+    list[str] | None, option("NAME", "Compare although bundles differ in this; repeatable.")
 ]
 Keys = Annotated[
     list[str] | None,
-    typer.Option(
-        metavar="HEX", help="Accept outcomes of verify that this public key signed; repeatable."
-    ),
+    option("HEX", "Accept outcomes of verify that this public key signed; repeatable."),
 ]
 
 

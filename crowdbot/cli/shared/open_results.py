@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import option
 from crowdbot.core.support.text import plural
 from crowdbot.errors import CrowdbotError, InputError, UnknownNameError
 
@@ -25,9 +26,9 @@ Altered = Annotated[
 ]
 Reference = Annotated[
     str | None,
-    typer.Option(
-        metavar="crowdbot|FILE|ROOT",
-        help="Reference scores beside them: those that come with crowdbot, a file, or runs.",
+    option(
+        "crowdbot|FILE|ROOT",
+        "Reference scores beside them: those that come with crowdbot, a file, or runs.",
     ),
 ]
 #: Number of changes that are named.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.shared.installed import installed
+from crowdbot.cli.shared.option import argument, option
 
 if TYPE_CHECKING:
     from crowdbot.core.planning.choice import PlannerPlace
@@ -24,13 +25,12 @@ __all__ = [
     "planner_place",
 ]
 
-SuiteArgument = Annotated[str, typer.Argument(metavar="SUITE", help="File, or name of a suite.")]
+SuiteArgument = Annotated[str, argument("SUITE", "File, or name of a suite.")]
 OnlyScenarios = Annotated[
-    list[str] | None, typer.Option(metavar="GLOB", help="Only scenarios that match; repeatable.")
+    list[str] | None, option("GLOB", "Only scenarios that match; repeatable.")
 ]
 EveryScenarioSet = Annotated[
-    list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Set a value in every scenario; repeatable."),
+    list[str] | None, option("KEY=VALUE", "Set a value in every scenario; repeatable.", "--set")
 ]
 Jobs = Annotated[int, typer.Option(min=0, help="Processes; 0 is one for each core.")]
 OwnRecordings = Annotated[
@@ -42,22 +42,18 @@ OwnRecordings = Annotated[
     ),
 ]
 ScenarioSet = Annotated[
-    list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Set a value of the scenario; repeatable."),
+    list[str] | None, option("KEY=VALUE", "Set a value of the scenario; repeatable.", "--set")
 ]
 PlannerSet = Annotated[
-    list[str] | None,
-    typer.Option(metavar="KEY=VALUE", help="Set a parameter of the planner; repeatable."),
+    list[str] | None, option("KEY=VALUE", "Set a parameter of the planner; repeatable.")
 ]
 MakeReferences = Annotated[
     bool, typer.Option(help="First run robot_alone and crowd_alone, unless done before.")
 ]
 Plugins = Annotated[
     list[Path] | None,
-    typer.Option(
-        "--plugin",
-        metavar="PATH",
-        help="A plugin that is not installed: file, package or project; repeatable.",
+    option(
+        "PATH", "A plugin that is not installed: file, package or project; repeatable.", "--plugin"
     ),
 ]
 NoPlugins = Annotated[

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from crowdbot.cli.shared.option import option
+
 PagePort = Annotated[
     int, typer.Option(min=0, max=65535, help="Port of the page on 127.0.0.1; 0: a free one.")
 ]
@@ -18,8 +20,5 @@ Rate = Annotated[
     ),
 ]
 ReplayRun = Annotated[
-    Path | None,
-    typer.Option(
-        metavar="RUN_DIR", help="No page: the commands that this run recorded, once more."
-    ),
+    Path | None, option("RUN_DIR", "No page: the commands that this run recorded, once more.")
 ]

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from crowdbot.cli.shared.option import argument, option
+
 
 class RecordChoice(StrEnum):
     """Levels of simulated and recorded sensors."""
@@ -17,16 +19,15 @@ class RecordChoice(StrEnum):
     none = "none"
 
 
-SpecArgument = Annotated[str, typer.Argument(metavar="SPEC", help="File, or name of a suite.")]
+SpecArgument = Annotated[str, argument("SPEC", "File, or name of a suite.")]
 ScenarioArgument = Annotated[
-    str | None, typer.Argument(metavar="[ID]", help="Scenario: id, unique prefix or pattern.")
+    str | None, argument("[ID]", "Scenario: id, unique prefix or pattern.")
 ]
 Overrides = Annotated[
-    list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Set a value of the scenario; repeatable."),
+    list[str] | None, option("KEY=VALUE", "Set a value of the scenario; repeatable.", "--set")
 ]
 RunSeed = Annotated[int, typer.Option(min=0, help="Run seed: sensor noise and planner.")]
-OutRoot = Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")]
+OutRoot = Annotated[Path, option("DIR", "Root of the run directories.")]
 Record = Annotated[RecordChoice, typer.Option(help="Sensors to simulate and record.")]
 AsJson = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
 AllScores = Annotated[

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.core.support.text import plural, size_text
 from crowdbot.dsl.suite.suite_entry import NO_SUITE
@@ -24,24 +25,14 @@ if TYPE_CHECKING:
 
 
 def bundle(
-    root: Annotated[
-        Path, typer.Argument(metavar="[ROOT]", help="Root of the run directories.")
-    ] = Path("runs"),
-    suite: Annotated[
-        str | None, typer.Option(metavar="SPEC", help="The suite that was run: file or name.")
-    ] = None,
-    planner: Annotated[
-        str | None, typer.Option(metavar="LABEL", help="The planner: name of its folders.")
-    ] = None,
+    root: Annotated[Path, argument("[ROOT]", "Root of the run directories.")] = Path("runs"),
+    suite: Annotated[str | None, option("SPEC", "The suite that was run: file or name.")] = None,
+    planner: Annotated[str | None, option("LABEL", "The planner: name of its folders.")] = None,
     out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="File to write; default: SUITE-PLANNER.cbz.")
+        Path | None, option("FILE", "File to write; default: SUITE-PLANNER.cbz.")
     ] = None,
-    team: Annotated[
-        str, typer.Option(metavar="NAME", help="Name of the team, for the leaderboard.")
-    ] = "",
-    contact: Annotated[
-        str, typer.Option(metavar="TEXT", help="Whom to ask about the bundle.")
-    ] = "",
+    team: Annotated[str, option("NAME", "Name of the team, for the leaderboard.")] = "",
+    contact: Annotated[str, option("TEXT", "Whom to ask about the bundle.")] = "",
     partial: Annotated[
         bool,
         typer.Option("--partial", help="Pack the runs that are there, even if some are missing."),
@@ -60,10 +51,7 @@ def bundle(
         typer.Option(min=0, metavar="S", help="--check: seed of the sample; default: a new one."),
     ] = None,
     source: Annotated[
-        str | None,
-        typer.Option(
-            metavar="FILE.py:CLASS|FILE.yaml", help="--check: the planner, if not installed."
-        ),
+        str | None, option("FILE.py:CLASS|FILE.yaml", "--check: the planner, if not installed.")
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

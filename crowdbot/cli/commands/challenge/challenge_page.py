@@ -16,17 +16,17 @@ from crowdbot.cli.shared.folder_of_bundles import (
     read_bundles,
     trusted_keys,
 )
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.core.support.text import plural
 
 
 def challenge_page(
-    suite: Annotated[str, typer.Argument(metavar="SUITE", help="File or name of the suite.")],
+    suite: Annotated[str, argument("SUITE", "File or name of the suite.")],
     bundles: Annotated[
-        Path | None,
-        typer.Argument(metavar="[BUNDLES]", help="Folder of bundles (*.cbz); default: none yet."),
+        Path | None, argument("[BUNDLES]", "Folder of bundles (*.cbz); default: none yet.")
     ] = None,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder to write.")] = Path("site"),
+    out: Annotated[Path, option("DIR", "Folder to write.")] = Path("site"),
     accept: Accept = None,
     key: Keys = None,
     plugin: Plugins = None,

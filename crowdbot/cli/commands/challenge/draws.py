@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, SuiteArgument, installed
 
 if TYPE_CHECKING:
@@ -17,10 +18,9 @@ if TYPE_CHECKING:
 
 draws = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False)
 
-_Suite = Annotated[str, typer.Argument(metavar="SUITE", help="File of the suite.")]
+_Suite = Annotated[str, argument("SUITE", "File of the suite.")]
 _Secret = Annotated[
-    Path | None,
-    typer.Option(metavar="FILE", help="Seed and salt; default: NAME.secret.json beside the suite."),
+    Path | None, option("FILE", "Seed and salt; default: NAME.secret.json beside the suite.")
 ]
 _Print = Annotated[
     bool, typer.Option("--print", help="Print the lines and leave the suite's file as it is.")
@@ -41,8 +41,7 @@ def commit(
     suite: _Suite,
     secret: _Secret = None,
     seed_file: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="The seed; default: from the system's entropy."),
+        Path | None, option("FILE", "The seed; default: from the system's entropy.")
     ] = None,
     print_only: _Print = False,
     plugin: Plugins = None,
@@ -110,9 +109,8 @@ def check(
     suite: SuiteArgument,
     commitment: Annotated[
         str | None,
-        typer.Option(
-            metavar="sha256:HEX",
-            help="The hash that the organiser published before the draws were revealed.",
+        option(
+            "sha256:HEX", "The hash that the organiser published before the draws were revealed."
         ),
     ] = None,
     plugin: Plugins = None,

@@ -10,6 +10,7 @@ import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.campaign_run import run_plan, worker_count
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import (
     MEMORY_GIB,
     NoPlugins,
@@ -23,28 +24,18 @@ from crowdbot.core.support.text import plural
 
 
 def judge(
-    suite: Annotated[str, typer.Argument(metavar="SUITE", help="File or name of the suite.")],
-    submissions: Annotated[
-        Path,
-        typer.Argument(metavar="SUBMISSIONS", help="Folder of sealed planners (*.cbs)."),
-    ],
-    out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Folder to write: log, runs and bundles.")
-    ] = Path("judged"),
+    suite: Annotated[str, argument("SUITE", "File or name of the suite.")],
+    submissions: Annotated[Path, argument("SUBMISSIONS", "Folder of sealed planners (*.cbs).")],
+    out: Annotated[Path, option("DIR", "Folder to write: log, runs and bundles.")] = Path("judged"),
     jobs: Annotated[int, typer.Option(min=0, metavar="N", help="Processes; 0: one per core.")] = 0,
-    cluster: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Scheduler of a Dask cluster.")
-    ] = None,
+    cluster: Annotated[str | None, option("ADDRESS", "Scheduler of a Dask cluster.")] = None,
     not_contained: Annotated[
         bool,
         typer.Option("--not-contained", help="Run planners that this system does not contain."),
     ] = False,
     planner_memory: PlannerMemory = MEMORY_GIB,
     step_budget: Annotated[
-        float | None,
-        typer.Option(
-            metavar="SECONDS", help="Wall time that a planner step may take; default: 10 s."
-        ),
+        float | None, option("SECONDS", "Wall time that a planner step may take; default: 10 s.")
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

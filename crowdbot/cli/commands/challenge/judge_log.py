@@ -6,22 +6,19 @@ import json
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.support.text import plural
 
 
 def judge_log(
-    log: Annotated[Path, typer.Argument(metavar="FILE", help="Log, or folder of a judge.")],
+    log: Annotated[Path, argument("FILE", "Log, or folder of a judge.")],
     key: Annotated[
-        list[str] | None,
-        typer.Option(metavar="HEX", help="Public key of the organiser; default: your own."),
+        list[str] | None, option("HEX", "Public key of the organiser; default: your own.")
     ] = None,
     known: Annotated[
-        str | None,
-        typer.Option(metavar="SHA256", help="Hash of a line that was published before."),
+        str | None, option("SHA256", "Hash of a line that was published before.")
     ] = None,
     as_json: AsJson = False,
 ) -> None:

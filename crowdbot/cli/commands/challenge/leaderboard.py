@@ -10,22 +10,20 @@ import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.folder_of_bundles import Accept, Keys, read_bundles
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.text import plural
 
 
 def leaderboard(
-    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Folder with bundles (*.cbz).")],
-    out: Annotated[Path, typer.Option(metavar="FILE", help="File to write, .html: the page.")] = (
+    folder: Annotated[Path, argument("FOLDER", "Folder with bundles (*.cbz).")],
+    out: Annotated[Path, option("FILE", "File to write, .html: the page.")] = (
         Path("leaderboard.html")
     ),
     by: Annotated[
-        str,
-        typer.Option(
-            metavar="METRIC", help="Metric that decides the order; rule: the ranking rule."
-        ),
+        str, option("METRIC", "Metric that decides the order; rule: the ranking rule.")
     ] = "rule",
-    title: Annotated[str, typer.Option(metavar="TEXT", help="Heading.")] = "Leaderboard",
+    title: Annotated[str, option("TEXT", "Heading.")] = "Leaderboard",
     suite: Annotated[
         list[str] | None,
         typer.Option(
@@ -37,9 +35,7 @@ def leaderboard(
     accept: Accept = None,
     audit: Annotated[
         list[Path] | None,
-        typer.Option(
-            metavar="FILE", help="Audit of a suite; repeatable. Default: FOLDER/*audit.json."
-        ),
+        option("FILE", "Audit of a suite; repeatable. Default: FOLDER/*audit.json."),
     ] = None,
     key: Keys = None,
     plugin: Plugins = None,

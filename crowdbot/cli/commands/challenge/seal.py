@@ -7,9 +7,8 @@ import tempfile
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.support.text import plural
@@ -17,23 +16,17 @@ from crowdbot.errors import InputError, printable
 
 
 def seal(
-    planner: Annotated[str, typer.Argument(metavar="FILE.py:CLASS|FILE.yaml", help="The planner.")],
-    out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="File to write, .cbs; default: NAME.cbs.")
-    ] = None,
+    planner: Annotated[str, argument("FILE.py:CLASS|FILE.yaml", "The planner.")],
+    out: Annotated[Path | None, option("FILE", "File to write, .cbs; default: NAME.cbs.")] = None,
     planner_set: Annotated[
-        list[str] | None,
-        typer.Option(metavar="KEY=VALUE", help="Parameter of the planner; repeatable."),
+        list[str] | None, option("KEY=VALUE", "Parameter of the planner; repeatable.")
     ] = None,
     include: Annotated[
-        list[str] | None,
-        typer.Option(metavar="PATTERN", help="More files beside it, such as data; repeatable."),
+        list[str] | None, option("PATTERN", "More files beside it, such as data; repeatable.")
     ] = None,
-    environment: Annotated[
-        str, typer.Option(metavar="FILE", help="File beside it that lists needed libraries.")
-    ] = "",
-    team: Annotated[str, typer.Option(metavar="TEXT", help="Name of the team.")] = "",
-    contact: Annotated[str, typer.Option(metavar="TEXT", help="How to reach the team.")] = "",
+    environment: Annotated[str, option("FILE", "File beside it that lists needed libraries.")] = "",
+    team: Annotated[str, option("TEXT", "Name of the team.")] = "",
+    contact: Annotated[str, option("TEXT", "How to reach the team.")] = "",
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: AsJson = False,
@@ -51,9 +44,9 @@ def seal(
     from crowdbot.core.planning.planner_files import planner_files
     from crowdbot.core.planning.resolve import resolve_planner
 
-    for option, text in (("--team", team), ("--contact", contact)):
+    for flag, text in (("--team", team), ("--contact", contact)):
         if problem := name_problem(text):
-            raise InputError(f"{option} {printable(text[:60])!r}: {problem}")
+            raise InputError(f"{flag} {printable(text[:60])!r}: {problem}")
     registry = installed(plugin, no_plugins)
     choice = resolve_planner(planner, registry, planner_set or ())
     files = planner_files(planner, [*(include or ()), *([environment] if environment else [])])

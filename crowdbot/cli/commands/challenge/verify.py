@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import (
     MEMORY_GIB,
     InProcess,
@@ -48,10 +49,7 @@ _SAYS = {
 
 def verify(
     bundle: Annotated[
-        Path,
-        typer.Argument(
-            metavar="BUNDLE", help="A bundle; or reference scores: 'references', or a .json.xz."
-        ),
+        Path, argument("BUNDLE", "A bundle; or reference scores: 'references', or a .json.xz.")
     ],
     sample: Annotated[
         int, typer.Option(min=0, metavar="N", help="How many runs to make again; 0: none.")
@@ -63,14 +61,11 @@ def verify(
     ] = None,
     source: Annotated[
         str | None,
-        typer.Option(
-            metavar="FILE.py:CLASS|FILE.yaml|FILE.cbs",
-            help="The planner, where it is not installed.",
-        ),
+        option("FILE.py:CLASS|FILE.yaml|FILE.cbs", "The planner, where it is not installed."),
     ] = None,
     planner: Annotated[str | None, typer.Option(hidden=True, help="The same, as before.")] = None,
     suite: Annotated[
-        str | None, typer.Option(metavar="SPEC", help="The suite, where it is not a packaged one.")
+        str | None, option("SPEC", "The suite, where it is not a packaged one.")
     ] = None,
     save: Annotated[
         bool,
@@ -78,9 +73,7 @@ def verify(
     ] = False,
     trust: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="PLUGIN", help="You have read the code of this planner's plugin; repeatable."
-        ),
+        option("PLUGIN", "You have read the code of this planner's plugin; repeatable."),
     ] = None,
     fresh_draws: Annotated[
         int,

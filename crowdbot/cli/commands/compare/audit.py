@@ -13,6 +13,7 @@ import typer
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.campaign_run import print_plan, read_seeds, run_plan, worker_count
+from crowdbot.cli.shared.option import option
 from crowdbot.cli.shared.options import (
     EveryScenarioSet,
     Jobs,
@@ -43,11 +44,9 @@ def audit(
         ),
     ] = None,
     only: OnlyScenarios = None,
-    seeds: Annotated[str, typer.Option(metavar="0,1,2|0..4", help="Run seeds.")] = "0",
+    seeds: Annotated[str, option("0,1,2|0..4", "Run seeds.")] = "0",
     overrides: EveryScenarioSet = None,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")] = Path(
-        "runs"
-    ),
+    out: Annotated[Path, option("DIR", "Root of the run directories.")] = Path("runs"),
     jobs: Jobs = 0,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Print the plan only.")] = False,
     adversaries: Annotated[
@@ -58,9 +57,9 @@ def audit(
     ] = False,
     careful: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="NAME|FILE|file.py:Class",
-            help="With --adversaries: a further planner that none may be ahead of; repeatable.",
+        option(
+            "NAME|FILE|file.py:Class",
+            "With --adversaries: a further planner that none may be ahead of; repeatable.",
         ),
     ] = None,
     plugin: Plugins = None,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.cli.shared.run_arguments import AsJson
 
@@ -21,13 +22,11 @@ _SIDE = "SUITE/ID, FILE#ID, a file with one scenario, or a run directory."
 
 
 def diff(
-    a: Annotated[str, typer.Argument(metavar="A", help=_SIDE)],
-    b: Annotated[str, typer.Argument(metavar="B", help=_SIDE)],
+    a: Annotated[str, argument("A", _SIDE)],
+    b: Annotated[str, argument("B", _SIDE)],
     overrides: Annotated[
         list[str] | None,
-        typer.Option(
-            "--set", metavar="KEY=VALUE", help="Set a value of B before comparing; repeatable."
-        ),
+        option("KEY=VALUE", "Set a value of B before comparing; repeatable.", "--set"),
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

@@ -10,6 +10,7 @@ import typer
 
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import option
 from crowdbot.cli.shared.options import NoPlugins, OwnRecordings, Plugins, check_ending, installed
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.runs.run_directory import recordings_under
@@ -52,12 +53,10 @@ def realism(
         ),
     ] = None,
     overrides: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Set a value of the crowd; repeatable."),
+        list[str] | None, option("KEY=VALUE", "Set a value of the crowd; repeatable.", "--set")
     ] = None,
     out: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="File to write, .html: page with the curves."),
+        Path | None, option("FILE", "File to write, .html: page with the curves.")
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import Jobs, NoPlugins, OnlyScenarios, Plugins, installed
 from crowdbot.core.support.text import plural
 
@@ -30,8 +31,7 @@ _Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
 def show(
     context: typer.Context,
     file: Annotated[
-        str,
-        typer.Option(metavar="crowdbot|FILE", help="Default: those that come with crowdbot."),
+        str, option("crowdbot|FILE", "Default: those that come with crowdbot.")
     ] = "crowdbot",
     as_json: _Json = False,
 ) -> None:
@@ -74,26 +74,20 @@ def _makers(runs: Sequence[RunRow]) -> list[dict[str, Any]]:
 
 @references.command()
 def make(
-    suites: Annotated[list[str], typer.Argument(metavar="SUITE...", help="Files or names.")],
+    suites: Annotated[list[str], argument("SUITE...", "Files or names.")],
     planner: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME", help="Default: all but adversaries; repeatable."),
+        list[str] | None, option("NAME", "Default: all but adversaries; repeatable.")
     ] = None,
-    seeds: Annotated[
-        str, typer.Option(metavar="0,1,2|0..2", help="Run seeds of every scenario.")
-    ] = "0..2",
+    seeds: Annotated[str, option("0,1,2|0..2", "Run seeds of every scenario.")] = "0..2",
     only: OnlyScenarios = None,
-    runs: Annotated[
-        Path, typer.Option(metavar="DIR", help="Root of the run directories, which are kept.")
-    ] = Path("reference_runs"),
-    out: Annotated[Path, typer.Option(metavar="FILE", help="File to write, .json.xz.")] = Path(
+    runs: Annotated[Path, option("DIR", "Root of the run directories, which are kept.")] = Path(
+        "reference_runs"
+    ),
+    out: Annotated[Path, option("FILE", "File to write, .json.xz.")] = Path(
         "reference_scores.json.xz"
     ),
     extend: Annotated[
-        str | None,
-        typer.Option(
-            metavar="crowdbot|FILE", help="Add to these; runs that they have are not made again."
-        ),
+        str | None, option("crowdbot|FILE", "Add to these; runs that they have are not made again.")
     ] = None,
     jobs: Jobs = 0,
     plugin: Plugins = None,

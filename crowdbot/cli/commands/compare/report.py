@@ -18,6 +18,7 @@ import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.open_results import Altered, Reference, open_results, suite_id
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.text import plural
 from crowdbot.errors import InputError, UnknownNameError
@@ -34,32 +35,25 @@ _SHOWN = 3
 
 
 def report(
-    root: Annotated[
-        Path, typer.Argument(metavar="[ROOT]", help="Where campaigns and simulations put runs.")
-    ] = Path("runs"),
+    root: Annotated[Path, argument("[ROOT]", "Where campaigns and simulations put runs.")] = Path(
+        "runs"
+    ),
     suite: Annotated[
-        str | None,
-        typer.Option(metavar="SPEC", help="Which suite, if there are several: its id or file."),
+        str | None, option("SPEC", "Which suite, if there are several: its id or file.")
     ] = None,
     planner: Annotated[
-        list[str] | None,
-        typer.Option(metavar="GLOB", help="Only planners with such labels; repeatable."),
+        list[str] | None, option("GLOB", "Only planners with such labels; repeatable.")
     ] = None,
     reference: Reference = None,
     out: Annotated[
-        Path,
-        typer.Option(metavar="FILE", help="File to write, .html; .csv and .md lie beside it."),
+        Path, option("FILE", "File to write, .html; .csv and .md lie beside it.")
     ] = Path("report.html"),
     accept: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="CONFOUND",
-            help="Compare although runs differ in this; the page says so; repeatable.",
-        ),
+        option("CONFOUND", "Compare although runs differ in this; the page says so; repeatable."),
     ] = None,
     audit: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Audit of the suite; default: ROOT/ID/audit.json."),
+        Path | None, option("FILE", "Audit of the suite; default: ROOT/ID/audit.json.")
     ] = None,
     no_replay_links: Annotated[
         bool,

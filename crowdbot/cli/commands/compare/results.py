@@ -22,6 +22,7 @@ from crowdbot.cli.shared.open_results import (
     open_results,
     with_scales,
 )
+from crowdbot.cli.shared.option import option
 from crowdbot.core.scoring.four_scores import MAIN_SCORES
 from crowdbot.core.support.text import plural
 
@@ -46,12 +47,9 @@ results = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-_Out = Annotated[
-    Path, typer.Option("--runs", "--out", metavar="DIR", help="Root of the run directories.")
-]
+_Out = Annotated[Path, option("DIR", "Root of the run directories.", "--runs", "--out")]
 _Planners = Annotated[
-    list[str] | None,
-    typer.Option(metavar="GLOB", help="Only planners with such labels; repeatable."),
+    list[str] | None, option("GLOB", "Only planners with such labels; repeatable.")
 ]
 _Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
 _ROOT = Path("runs")
@@ -69,23 +67,17 @@ def show(
     out: _Out = _ROOT,
     metric: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="GLOB", help="A metric to show; default: the suite's, and a few; repeatable."
-        ),
+        option("GLOB", "A metric to show; default: the suite's, and a few; repeatable."),
     ] = None,
     variant: Annotated[
-        str | None,
-        typer.Option(metavar="NAME", help="Variant; default: rate or pace, or else corrected."),
+        str | None, option("NAME", "Variant; default: rate or pace, or else corrected.")
     ] = None,
     by: Annotated[
-        str,
-        typer.Option(
-            metavar="AXIS,AXIS", help="Group by these: planner, seed, status, axes of the suite."
-        ),
+        str, option("AXIS,AXIS", "Group by these: planner, seed, status, axes of the suite.")
     ] = "planner",
     planner: _Planners = None,
     status: Annotated[
-        str | None, typer.Option(metavar="STATUS", help="Only runs that ended so, such as timeout.")
+        str | None, option("STATUS", "Only runs that ended so, such as timeout.")
     ] = None,
     reference: Reference = None,
     worst: Annotated[
@@ -154,8 +146,8 @@ def _summaries(
 @results.command()
 def export(
     out: _Out = _ROOT,
-    csv: Annotated[Path | None, typer.Option(metavar="FILE", help="Write CSV.")] = None,
-    parquet: Annotated[Path | None, typer.Option(metavar="FILE", help="Write Parquet.")] = None,
+    csv: Annotated[Path | None, option("FILE", "Write CSV.")] = None,
+    parquet: Annotated[Path | None, option("FILE", "Write Parquet.")] = None,
     table: Annotated[Literal["scores", "runs"], typer.Option(help="Which table.")] = "scores",
     altered: Altered = False,
 ) -> None:
@@ -237,10 +229,9 @@ def tracking(
 def atlas(
     out: _Out = _ROOT,
     floor: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME", help="A planner that others ought to beat; repeatable."),
+        list[str] | None, option("NAME", "A planner that others ought to beat; repeatable.")
     ] = None,
-    md: Annotated[Path | None, typer.Option(metavar="FILE", help="Write Markdown.")] = None,
+    md: Annotated[Path | None, option("FILE", "Write Markdown.")] = None,
     altered: Altered = False,
     as_json: _Json = False,
 ) -> None:
@@ -266,22 +257,18 @@ def atlas(
 @results.command()
 def power(
     out: _Out = _ROOT,
-    metric: Annotated[str, typer.Option(metavar="NAME", help="The score.")] = MAIN_SCORES[0].metric,
-    variant: Annotated[str, typer.Option(metavar="NAME", help="Its variant.")] = "corrected",
+    metric: Annotated[str, option("NAME", "The score.")] = MAIN_SCORES[0].metric,
+    variant: Annotated[str, option("NAME", "Its variant.")] = "corrected",
     size: Annotated[
-        list[float] | None,
-        typer.Option(metavar="X", help="A difference to find; default 0.05, 0.02; repeatable."),
+        list[float] | None, option("X", "A difference to find; default 0.05, 0.02; repeatable.")
     ] = None,
     tests: Annotated[
         int, typer.Option(min=1, metavar="N", help="Tests that share the chance of 5 %.")
     ] = 1,
     planner: _Planners = None,
-    by: Annotated[
-        str, typer.Option(metavar="AXIS", help="A line for each label of this, not condition.")
-    ] = "",
+    by: Annotated[str, option("AXIS", "A line for each label of this, not condition.")] = "",
     reference: Annotated[
-        str | None,
-        typer.Option(metavar="crowdbot|FILE|ROOT", help="These reference scores, not --runs."),
+        str | None, option("crowdbot|FILE|ROOT", "These reference scores, not --runs.")
     ] = None,
     altered: Altered = False,
     as_csv: Annotated[bool, typer.Option("--csv", help="CSV on stdout.")] = False,
@@ -307,10 +294,8 @@ def power(
 @results.command()
 def ladder(
     out: _Out = _ROOT,
-    metric: Annotated[
-        str | None, typer.Option(metavar="NAME", help="The score; default: safe efficiency.")
-    ] = None,
-    variant: Annotated[str, typer.Option(metavar="NAME", help="Its variant.")] = "corrected",
+    metric: Annotated[str | None, option("NAME", "The score; default: safe efficiency.")] = None,
+    variant: Annotated[str, option("NAME", "Its variant.")] = "corrected",
     altered: Altered = False,
     as_csv: Annotated[bool, typer.Option("--csv", help="CSV on stdout.")] = False,
     as_json: _Json = False,

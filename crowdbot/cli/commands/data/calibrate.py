@@ -10,6 +10,7 @@ import typer
 
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import option
 from crowdbot.cli.shared.options import (
     Jobs,
     NoPlugins,
@@ -44,9 +45,7 @@ def calibrate(
     reference: OwnRecordings = None,
     fit: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="KEY=LOW..HIGH", help="Fit this number, SI units; default: all of them."
-        ),
+        option("KEY=LOW..HIGH", "Fit this number, SI units; default: all of them."),
     ] = None,
     robot: Annotated[
         bool,
@@ -54,11 +53,7 @@ def calibrate(
     ] = False,
     overrides: Annotated[
         list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Set a value of the crowd before the fit; repeatable.",
-        ),
+        option("KEY=VALUE", "Set a value of the crowd before the fit; repeatable.", "--set"),
     ] = None,
     generations: Annotated[int, typer.Option(min=1, metavar="N", help="Steps of the fit.")] = 40,
     population: Annotated[
@@ -71,10 +66,9 @@ def calibrate(
         int, typer.Option(min=1, help="Seed of the fit; equal seeds give equal fits.")
     ] = 1,
     jobs: Jobs = 0,
-    out: Annotated[
-        Path,
-        typer.Option(metavar="FILE", help="File to write, .yaml; its log is beside it."),
-    ] = Path("fitted.yaml"),
+    out: Annotated[Path, option("FILE", "File to write, .yaml; its log is beside it.")] = Path(
+        "fitted.yaml"
+    ),
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: AsJson = False,

@@ -9,13 +9,12 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 
 
 def edit(
-    spec: Annotated[
-        Path, typer.Argument(metavar="FILE", help="A scenario, .yaml; a new one may not exist yet.")
-    ],
+    spec: Annotated[Path, argument("FILE", "A scenario, .yaml; a new one may not exist yet.")],
     port: Annotated[
         int, typer.Option(min=0, max=65535, metavar="PORT", help="Port; 0: a free one.")
     ] = 0,

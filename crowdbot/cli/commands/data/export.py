@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument, option
 
 if TYPE_CHECKING:
     from crowdbot.core.recording.export.bag import BagOptions
@@ -58,18 +59,14 @@ _SETS = (ExportFormat.trajnet, ExportFormat.minari)
 def export(
     run: Annotated[
         Path,
-        typer.Argument(
-            metavar="RUN_DIR|FILE.mcap|RUNS",
-            help="A run, its recording, or a folder of runs for trajnet and minari.",
+        argument(
+            "RUN_DIR|FILE.mcap|RUNS",
+            "A run, its recording, or a folder of runs for trajnet and minari.",
         ),
     ],
-    to: Annotated[
-        ExportFormat,
-        typer.Option("--to", metavar="FORMAT", help=f"One of {', '.join(ExportFormat)}."),
-    ],
+    to: Annotated[ExportFormat, option("FORMAT", f"One of {', '.join(ExportFormat)}.", "--to")],
     out: Annotated[
-        Path | None,
-        typer.Option(metavar="PATH", help="File or folder to write; default: beside it."),
+        Path | None, option("PATH", "File or folder to write; default: beside it.")
     ] = None,
     offset: Annotated[
         int, typer.Option(min=0, metavar="SECONDS", help="Bags: add this to all times.")
@@ -87,9 +84,7 @@ def export(
             help="Bags: names usual in ROS, such as /scan, or the recording's.",
         ),
     ] = True,
-    robot: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Tables: which of several robots.")
-    ] = None,
+    robot: Annotated[str | None, option("NAME", "Tables: which of several robots.")] = None,
     first: Annotated[
         float | None,
         typer.Option("--from", min=0.0, metavar="SECONDS", help="Films: where to begin."),

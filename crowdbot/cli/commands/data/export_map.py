@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, ScenarioSet, installed
 from crowdbot.cli.shared.run_arguments import ScenarioArgument, SpecArgument
 from crowdbot.errors import UsageError
@@ -23,12 +24,8 @@ _HEAD = 1.7
 def export_map(
     spec: SpecArgument,
     scenario: ScenarioArgument = None,
-    out: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Folder to write; default: ID.map, here.")
-    ] = None,
-    resolution: Annotated[
-        float, typer.Option(metavar="METRES", help="Side of a cell of the grid.")
-    ] = 0.05,
+    out: Annotated[Path | None, option("DIR", "Folder to write; default: ID.map, here.")] = None,
+    resolution: Annotated[float, option("METRES", "Side of a cell of the grid.")] = 0.05,
     overrides: ScenarioSet = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

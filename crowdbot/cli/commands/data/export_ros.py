@@ -5,13 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument
 
 
 def export_ros(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to write to.")],
+    folder: Annotated[Path, argument("DIR", "Folder to write to.")],
 ) -> None:
     """Write the ROS 2 package `crowdbot_msgs`, and a layout for Foxglove and Lichtblick.
 

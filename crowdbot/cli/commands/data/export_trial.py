@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, ScenarioSet, check_ending, installed
 from crowdbot.cli.shared.run_arguments import ScenarioArgument, SpecArgument
 
@@ -17,8 +18,7 @@ def export_trial(
     spec: SpecArgument,
     scenario: ScenarioArgument = None,
     out: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="File to write, .xml; default: ID.xml, here."),
+        Path | None, option("FILE", "File to write, .xml; default: ID.xml, here.")
     ] = None,
     overrides: ScenarioSet = None,
     plugin: Plugins = None,

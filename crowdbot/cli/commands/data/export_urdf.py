@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 
 if TYPE_CHECKING:
@@ -28,9 +29,7 @@ def export_urdf(
     id_: Annotated[
         str | None, typer.Option("--id", help="Id in a suite; default: its first scenario.")
     ] = None,
-    out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="File to write; default: standard output.")
-    ] = None,
+    out: Annotated[Path | None, option("FILE", "File to write; default: standard output.")] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
 ) -> None:

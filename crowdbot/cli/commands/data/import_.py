@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 
 if TYPE_CHECKING:
@@ -20,14 +21,13 @@ if TYPE_CHECKING:
 def import_(
     files: Annotated[
         list[Path],
-        typer.Argument(
-            metavar="FILE...",
-            help="Files that belong together: trials of the original, UMANS XML, other programs.",
+        argument(
+            "FILE...",
+            "Files that belong together: trials of the original, UMANS XML, other programs.",
         ),
     ],
     out: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="File to write, .yaml; default: NAME.yaml, here."),
+        Path | None, option("FILE", "File to write, .yaml; default: NAME.yaml, here.")
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

@@ -9,15 +9,12 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument, option
 
 
 def weights(
-    file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="PyTorch's .pth of a state_dict, or .npz.")
-    ],
-    out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="File to write, .npz; default: none.")
-    ] = None,
+    file: Annotated[Path, argument("FILE", "PyTorch's .pth of a state_dict, or .npz.")],
+    out: Annotated[Path | None, option("FILE", "File to write, .npz; default: none.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Names and shapes as JSON.")] = False,
 ) -> None:
     """List or convert a network's weights without PyTorch; no code in the file is run.

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 
 plugins = typer.Typer(
@@ -49,7 +50,7 @@ def listing(
 
 @plugins.command()
 def show(
-    kind: Annotated[str, typer.Argument(metavar="KIND", help="Name of a component.")],
+    kind: Annotated[str, argument("KIND", "Name of a component.")],
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: _Json = False,
@@ -75,9 +76,7 @@ def show(
 
 @plugins.command()
 def check(
-    name: Annotated[
-        str | None, typer.Argument(metavar="[NAME]", help="A plugin, or the kind of a component.")
-    ] = None,
+    name: Annotated[str | None, argument("[NAME]", "A plugin, or the kind of a component.")] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: _Json = False,
@@ -110,12 +109,8 @@ def check(
 
 @plugins.command()
 def new(
-    name: Annotated[
-        str, typer.Argument(metavar="NAME", help="Name of the plugin: a word such as acme.")
-    ],
-    out: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Folder to write; default: crowdbot-NAME.")
-    ] = None,
+    name: Annotated[str, argument("NAME", "Name of the plugin: a word such as acme.")],
+    out: Annotated[Path | None, option("DIR", "Folder to write; default: crowdbot-NAME.")] = None,
     planner: Annotated[
         bool,
         typer.Option("--planner", help="One planner alone, which sees people with the tracker."),

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import UsageError
@@ -41,9 +42,7 @@ def schema(
             "--canonical", help="Schema of what crowdbot writes: numbers only, every field."
         ),
     ] = False,
-    out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="File to write; default: standard output.")
-    ] = None,
+    out: Annotated[Path | None, option("FILE", "File to write; default: standard output.")] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
 ) -> None:

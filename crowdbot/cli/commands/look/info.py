@@ -6,9 +6,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.errors import InputError, printable
 
@@ -18,9 +17,7 @@ if TYPE_CHECKING:
 
 
 def info(
-    file: Annotated[
-        Path, typer.Argument(metavar="FILE|RUN_DIR", help="A recording, or a run directory.")
-    ],
+    file: Annotated[Path, argument("FILE|RUN_DIR", "A recording, or a run directory.")],
     as_json: AsJson = False,
 ) -> None:
     """Show the contents of a recording: topics with rates and sizes, duration, hash, completeness.

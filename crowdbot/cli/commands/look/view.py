@@ -13,6 +13,7 @@ import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.serving.serve_arguments import AllowOrigin
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, ScenarioSet, check_ending, installed
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.text import listed
@@ -26,22 +27,17 @@ _FORMATS = (".html", ".svg", ".png")
 
 
 def view(
-    spec: Annotated[
-        str, typer.Argument(metavar="SPEC|RUN_DIR", help="File, name of a suite, or a run.")
-    ],
+    spec: Annotated[str, argument("SPEC|RUN_DIR", "File, name of a suite, or a run.")],
     others: Annotated[
         list[str] | None,
-        typer.Argument(
-            metavar="[ID|RUN_DIR ...]",
-            help="Scenario: id, unique beginning, or pattern. Or more runs, to compare.",
+        argument(
+            "[ID|RUN_DIR ...]",
+            "Scenario: id, unique beginning, or pattern. Or more runs, to compare.",
         ),
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="File to write: .html, .svg, .png; default: ID.html; of runs compare.html.",
-        ),
+        option("FILE", "File to write: .html, .svg, .png; default: ID.html; of runs compare.html."),
     ] = None,
     open_: Annotated[bool, typer.Option("--open", help="Show it in the browser.")] = False,
     overrides: ScenarioSet = None,

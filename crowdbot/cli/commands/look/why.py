@@ -7,10 +7,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.open_results import Altered, open_results
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import check_ending
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.support.atomic_write import atomic_write
@@ -22,17 +21,13 @@ if TYPE_CHECKING:
 
 
 def why(
-    path: Annotated[Path, typer.Argument(metavar="RUN|RUNS", help="A run, or a folder of runs.")],
-    robot: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Which robot, in a run of several.")
-    ] = None,
+    path: Annotated[Path, argument("RUN|RUNS", "A run, or a folder of runs.")],
+    robot: Annotated[str | None, option("NAME", "Which robot, in a run of several.")] = None,
     planner: Annotated[
-        list[str] | None,
-        typer.Option(metavar="LABEL", help="Of a folder: only this planner; repeatable."),
+        list[str] | None, option("LABEL", "Of a folder: only this planner; repeatable.")
     ] = None,
     out: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="File to write, .html: with pictures from above."),
+        Path | None, option("FILE", "File to write, .html: with pictures from above.")
     ] = None,
     altered: Altered = False,
     as_json: AsJson = False,

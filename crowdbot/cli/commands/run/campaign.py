@@ -10,6 +10,7 @@ import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.campaign_run import print_plan, read_seeds, run_plan, worker_count
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import (
     MEMORY_GIB,
     EveryScenarioSet,
@@ -28,30 +29,20 @@ from crowdbot.cli.shared.run_arguments import AsJson, RecordChoice
 if TYPE_CHECKING:
     from crowdbot.core.campaign.run import State
 
-_PlannerSet = Annotated[
-    list[str] | None,
-    typer.Option(metavar="KEY=VALUE", help="Change every planner; repeatable."),
-]
-_Planner = Annotated[
-    list[str] | None,
-    typer.Option(metavar="NAME|FILE|file.py:Class", help="A planner; repeatable."),
-]
+_PlannerSet = Annotated[list[str] | None, option("KEY=VALUE", "Change every planner; repeatable.")]
+_Planner = Annotated[list[str] | None, option("NAME|FILE|file.py:Class", "A planner; repeatable.")]
 _Crowds = Annotated[
-    str | None,
-    typer.Option(
-        metavar="NAME,NAME", help="Run every scenario in each of these crowds: the axis 'crowd'."
-    ),
+    str | None, option("NAME,NAME", "Run every scenario in each of these crowds: the axis 'crowd'.")
 ]
 _Seeds = Annotated[
-    str | None,
-    typer.Option(metavar="0,1,2|0..4", help="Run seeds; default: those of the suite, or 0."),
+    str | None, option("0,1,2|0..4", "Run seeds; default: those of the suite, or 0.")
 ]
-_Out = Annotated[Path, typer.Option(metavar="DIR", help="Root of the run directories.")]
+_Out = Annotated[Path, option("DIR", "Root of the run directories.")]
 _Record = Annotated[RecordChoice, typer.Option(help="Sensors to simulate and record.")]
 
 
 def campaign(
-    suites: Annotated[list[str], typer.Argument(metavar="SUITE...", help="Files or names.")],
+    suites: Annotated[list[str], argument("SUITE...", "Files or names.")],
     planner: _Planner = None,
     seeds: _Seeds = None,
     only: OnlyScenarios = None,
@@ -74,9 +65,7 @@ def campaign(
         bool, typer.Option("--force", help="Run everything again, calibration runs too.")
     ] = False,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Print the plan only.")] = False,
-    cluster: Annotated[
-        str | None, typer.Option(metavar="tcp://HOST:PORT", help="A Dask scheduler.")
-    ] = None,
+    cluster: Annotated[str | None, option("tcp://HOST:PORT", "A Dask scheduler.")] = None,
     in_process: InProcess = None,
     planner_memory: PlannerMemory = MEMORY_GIB,
     plugin: Plugins = None,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.errors import UnknownNameError, UsageError
 
@@ -20,51 +21,29 @@ if TYPE_CHECKING:
 
 _Runs = Annotated[
     list[Path] | None,
-    typer.Argument(
-        metavar="RUN_DIR|FILE.mcap...",
-        help="Recordings, run directories, or folders with run directories below them.",
+    argument(
+        "RUN_DIR|FILE.mcap...",
+        "Recordings, run directories, or folders with run directories below them.",
     ),
 ]
-_Alone = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Recording of the same robot without people.")
-]
-_Crowd = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Recording of the same people without robot.")
-]
+_Alone = Annotated[Path | None, option("FILE", "Recording of the same robot without people.")]
+_Crowd = Annotated[Path | None, option("FILE", "Recording of the same people without robot.")]
 _Metrics = Annotated[
     list[str] | None,
-    typer.Option(
-        metavar="GLOB",
-        help="Which metrics; default: all but experimental ones; repeatable.",
-    ),
+    option("GLOB", "Which metrics; default: all but experimental ones; repeatable."),
 ]
-_Variant = Annotated[str, typer.Option(metavar="NAME|all", help="Which variants of metrics.")]
+_Variant = Annotated[str, option("NAME|all", "Which variants of metrics.")]
 _Experimental = Annotated[
     bool, typer.Option("--experimental", help="Score experimental metrics, too.")
 ]
-_Robot = Annotated[
-    str | None, typer.Option(metavar="NAME", help="Which of several robots: topics below /NAME.")
-]
-_UserTopic = Annotated[
-    str | None, typer.Option(metavar="TOPIC", help="Twist or TwistStamped: what the user wants.")
-]
-_CommandTopic = Annotated[
-    str, typer.Option(metavar="TOPIC", help="The same for the final command.")
-]
-_Commands = Annotated[
-    Path | None,
-    typer.Option(metavar="FILE", help="CSV t,v_user,w_user,v_sc,w_sc, or a recording."),
-]
-_Baseline = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Commands of the user driving unassisted.")
-]
-_VMax = Annotated[float | None, typer.Option(metavar="M_PER_S", help="Largest commanded speed.")]
-_WMax = Annotated[
-    float | None, typer.Option(metavar="RAD_PER_S", help="Largest commanded yaw rate.")
-]
-_Answers = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="CSV questionnaire,item,value: NASA-TLX, USE.")
-]
+_Robot = Annotated[str | None, option("NAME", "Which of several robots: topics below /NAME.")]
+_UserTopic = Annotated[str | None, option("TOPIC", "Twist or TwistStamped: what the user wants.")]
+_CommandTopic = Annotated[str, option("TOPIC", "The same for the final command.")]
+_Commands = Annotated[Path | None, option("FILE", "CSV t,v_user,w_user,v_sc,w_sc, or a recording.")]
+_Baseline = Annotated[Path | None, option("FILE", "Commands of the user driving unassisted.")]
+_VMax = Annotated[float | None, option("M_PER_S", "Largest commanded speed.")]
+_WMax = Annotated[float | None, option("RAD_PER_S", "Largest commanded yaw rate.")]
+_Answers = Annotated[Path | None, option("FILE", "CSV questionnaire,item,value: NASA-TLX, USE.")]
 _Jobs = Annotated[int, typer.Option(metavar="N", min=0, help="Processes; 0: one for each core.")]
 _Incomplete = Annotated[
     bool,
@@ -72,9 +51,7 @@ _Incomplete = Annotated[
         "--allow-incomplete", help="Score recordings that were cut off, as far as they go."
     ),
 ]
-_Out = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="File to write, .csv or .json: all scores.")
-]
+_Out = Annotated[Path | None, option("FILE", "File to write, .csv or .json: all scores.")]
 _Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
 
 

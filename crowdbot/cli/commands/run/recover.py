@@ -6,19 +6,14 @@ import json
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.run_arguments import AsJson
 
 
 def recover(
-    file: Annotated[
-        Path, typer.Argument(metavar="FILE|DIR.partial", help="An interrupted recording.")
-    ],
-    out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="File to write; default: beside it.")
-    ] = None,
+    file: Annotated[Path, argument("FILE|DIR.partial", "An interrupted recording.")],
+    out: Annotated[Path | None, option("FILE", "File to write; default: beside it.")] = None,
     as_json: AsJson = False,
 ) -> None:
     """Make a complete recording from an interrupted one; all but its last second is kept.

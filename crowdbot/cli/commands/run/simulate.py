@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from crowdbot.cli.shared.option import option
 from crowdbot.cli.shared.options import (
     MEMORY_GIB,
     InProcess,
@@ -42,9 +43,9 @@ def simulate(
     scenario: ScenarioArgument = None,
     planner: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="[ROBOT=]NAME|FILE|file.py:Class",
-            help="The planner under test, dwa by default; repeatable with the names of robots.",
+        option(
+            "[ROBOT=]NAME|FILE|file.py:Class",
+            "The planner under test, dwa by default; repeatable with the names of robots.",
         ),
     ] = None,
     overrides: Overrides = None,
@@ -60,16 +61,12 @@ def simulate(
         bool, typer.Option("--force", help="Run again, even if the run is complete.")
     ] = False,
     step_budget: Annotated[
-        float | None,
-        typer.Option(metavar="SECONDS", help="Wall time that a planner step may take."),
+        float | None, option("SECONDS", "Wall time that a planner step may take.")
     ] = None,
     replace_draws: ReplaceDraws = 0,
     duration: Annotated[
         float | None,
-        typer.Option(
-            metavar="SECONDS",
-            help="How long people walk in a scenario without a robot; default 60.",
-        ),
+        option("SECONDS", "How long people walk in a scenario without a robot; default 60."),
     ] = None,
     in_process: InProcess = None,
     planner_memory: PlannerMemory = MEMORY_GIB,

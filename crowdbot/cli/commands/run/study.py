@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.text import plural
 
@@ -22,10 +23,9 @@ study = typer.Typer(
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-_File = Annotated[Path, typer.Argument(metavar="STUDY", help="The study's YAML file.")]
+_File = Annotated[Path, argument("STUDY", "The study's YAML file.")]
 _Data = Annotated[
-    Path | None,
-    typer.Option(metavar="DIR", help="Folder of the study's data; default: beside it, -data."),
+    Path | None, option("DIR", "Folder of the study's data; default: beside it, -data.")
 ]
 _Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
 
@@ -43,8 +43,7 @@ def plan(
     file: _File,
     data: _Data = None,
     orders: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="Write an order file for each participant there."),
+        Path | None, option("DIR", "Write an order file for each participant there.")
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
@@ -83,9 +82,7 @@ def plan(
 @study.command()
 def run(
     file: _File,
-    participant: Annotated[
-        str | None, typer.Option(metavar="ID", help="Pseudonym of the participant.")
-    ] = None,
+    participant: Annotated[str | None, option("ID", "Pseudonym of the participant.")] = None,
     synthetic: Annotated[
         bool,
         typer.Option("--synthetic", help="Synthetic users drive; without --page forms stay open."),
@@ -132,9 +129,7 @@ def run(
 @study.command()
 def results(
     file: _File,
-    out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="File to write, .csv: the table.")
-    ] = None,
+    out: Annotated[Path | None, option("FILE", "File to write, .csv: the table.")] = None,
     data: _Data = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
@@ -167,12 +162,9 @@ def results(
 @study.command()
 def report(
     file: _File,
-    out: Annotated[Path, typer.Option(metavar="FILE", help="File to write, .html: the page.")] = (
-        Path("study.html")
-    ),
+    out: Annotated[Path, option("FILE", "File to write, .html: the page.")] = (Path("study.html")),
     scores: Annotated[
-        list[str] | None,
-        typer.Option(metavar="METRIC.VARIANT", help="Score to compare; repeatable."),
+        list[str] | None, option("METRIC.VARIANT", "Score to compare; repeatable.")
     ] = None,
     data: _Data = None,
     plugin: Plugins = None,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import option
 from crowdbot.cli.shared.options import Jobs, NoPlugins, Plugins, SuiteArgument, installed
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.scoring.four_scores import PRIMARY
@@ -31,12 +32,12 @@ class SweepHow(StrEnum):
 
 def sweep(
     suite: SuiteArgument,
-    planner: Annotated[str, typer.Option(metavar="NAME|FILE|file.py:Class", help="The planner.")],
+    planner: Annotated[str, option("NAME|FILE|file.py:Class", "The planner.")],
     vary: Annotated[
         list[str],
-        typer.Option(
-            metavar="KEY=A,B|KEY=LOW..HIGH",
-            help="A parameter and its values, or range (:log, :int); repeatable.",
+        option(
+            "KEY=A,B|KEY=LOW..HIGH",
+            "A parameter and its values, or range (:log, :int); repeatable.",
         ),
     ],
     how: Annotated[SweepHow, typer.Option(help="How trials are chosen.")] = SweepHow.random,
@@ -46,10 +47,8 @@ def sweep(
     steps: Annotated[
         int, typer.Option(min=2, max=100, metavar="N", help="Grid: values of a range.")
     ] = 4,
-    metric: Annotated[str, typer.Option(metavar="NAME", help="The score.")] = PRIMARY.metric,
-    only: Annotated[
-        list[str] | None, typer.Option(metavar="GLOB", help="Only these scenarios; repeatable.")
-    ] = None,
+    metric: Annotated[str, option("NAME", "The score.")] = PRIMARY.metric,
+    only: Annotated[list[str] | None, option("GLOB", "Only these scenarios; repeatable.")] = None,
     sample: Annotated[
         int, typer.Option(min=0, metavar="N", help="Number of scenarios, drawn at random; 0: all.")
     ] = 9,
@@ -58,8 +57,7 @@ def sweep(
         typer.Option(min=0, metavar="N", help="Number of best trials to check with other people."),
     ] = 3,
     planner_set: Annotated[
-        list[str] | None,
-        typer.Option(metavar="KEY=VALUE", help="Fixed parameters of the planner; repeatable."),
+        list[str] | None, option("KEY=VALUE", "Fixed parameters of the planner; repeatable.")
     ] = None,
     seed: Annotated[
         int,
@@ -67,9 +65,9 @@ def sweep(
             min=0, metavar="N", help="Seed of people and trials; people differ from the suite's."
         ),
     ] = 1,
-    out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Folder to write; the same one resumes the sweep.")
-    ] = Path("sweep"),
+    out: Annotated[Path, option("DIR", "Folder to write; the same one resumes the sweep.")] = Path(
+        "sweep"
+    ),
     jobs: Jobs = 0,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.serving.person_run import PagePorts, PersonRun, page_of, request_of, show_end
+from crowdbot.cli.shared.option import option
 from crowdbot.cli.shared.options import NoPlugins, PlannerSet, Plugins, installed
 from crowdbot.cli.shared.person_arguments import OpenPage, PagePort, Rate, ReplayRun
 from crowdbot.cli.shared.run_arguments import (
@@ -36,9 +37,9 @@ def teleop(
     ] = None,
     planner: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="NAME|ROBOT=NAME",
-            help="Planner that shares control with you; or ROBOT=PLANNER for another robot.",
+        option(
+            "NAME|ROBOT=NAME",
+            "Planner that shares control with you; or ROBOT=PLANNER for another robot.",
         ),
     ] = None,
     planner_set: PlannerSet = None,
@@ -54,10 +55,7 @@ def teleop(
         ),
     ] = None,
     zenoh: Annotated[
-        str | None,
-        typer.Option(
-            metavar="tcp/HOST:PORT", help="Programs drive, too: by ROS 2 and a zenoh router."
-        ),
+        str | None, option("tcp/HOST:PORT", "Programs drive, too: by ROS 2 and a zenoh router.")
     ] = None,
     rate: Rate = 1.0,
     replay: ReplayRun = None,

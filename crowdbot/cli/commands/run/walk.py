@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli.serving.person_run import PagePorts, PersonRun, page_of, request_of, show_end
+from crowdbot.cli.shared.option import option
 from crowdbot.cli.shared.options import MakeReferences, NoPlugins, PlannerSet, Plugins, installed
 from crowdbot.cli.shared.person_arguments import OpenPage, PagePort, Rate, ReplayRun
 from crowdbot.cli.shared.run_arguments import (
@@ -37,12 +38,9 @@ _FARTHEST = 1e6
 def walk(
     spec: SpecArgument,
     scenario: ScenarioArgument = None,
-    at: Annotated[
-        str | None, typer.Option(metavar="X,Y", help="Your start, m; default: a free place.")
-    ] = None,
+    at: Annotated[str | None, option("X,Y", "Your start, m; default: a free place.")] = None,
     goal: Annotated[
-        str | None,
-        typer.Option(metavar="X,Y", help="Your own goal, m: your trip is then scored, too."),
+        str | None, option("X,Y", "Your own goal, m: your trip is then scored, too.")
     ] = None,
     speed: Annotated[
         float,
@@ -50,15 +48,14 @@ def walk(
     ] = 1.4,
     planner: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="[ROBOT=]NAME|FILE|file.py:Class",
-            help="The planner of the robot; default dwa. ROBOT=PLANNER for several; repeatable.",
+        option(
+            "[ROBOT=]NAME|FILE|file.py:Class",
+            "The planner of the robot; default dwa. ROBOT=PLANNER for several; repeatable.",
         ),
     ] = None,
     planner_set: PlannerSet = None,
     duration: Annotated[
-        float | None,
-        typer.Option(metavar="SECONDS", help="Of a scenario without a robot; default 60."),
+        float | None, option("SECONDS", "Of a scenario without a robot; default 60.")
     ] = None,
     port: PagePort = 0,
     open_: OpenPage = False,

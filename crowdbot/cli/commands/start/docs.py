@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.errors import InputError, UnknownNameError
 
@@ -31,12 +32,9 @@ _DEVELOPERS = ("decisions/", "developers/")
 
 
 def docs(
-    page: Annotated[
-        str | None, typer.Argument(metavar="[PAGE]", help="Such as howto/score_own_data.")
-    ] = None,
+    page: Annotated[str | None, argument("[PAGE]", "Such as howto/score_own_data.")] = None,
     search: Annotated[
-        str | None,
-        typer.Option(metavar="TEXT", help="Print the lines of all pages that contain a text."),
+        str | None, option("TEXT", "Print the lines of all pages that contain a text.")
     ] = None,
     developers: Annotated[
         bool, typer.Option("--developers", help="Also search the pages for crowdbot's developers.")

@@ -11,13 +11,12 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import option
 from crowdbot.cli.shared.run_arguments import AsJson
 
 
 def doctor(
-    out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Where runs would go; its disk is checked.")
-    ] = Path("runs"),
+    out: Annotated[Path, option("DIR", "Where runs would go; its disk is checked.")] = Path("runs"),
     self_test: Annotated[
         bool,
         typer.Option(help="Simulate for a moment, too: about 10 s, more the first time."),

@@ -10,6 +10,7 @@ import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.output.scenario_list import hash_of, print_scenarios
+from crowdbot.cli.shared.option import option
 from crowdbot.cli.shared.options import EveryScenarioSet, NoPlugins, Plugins, installed
 from crowdbot.cli.shared.run_arguments import AsJson, SpecArgument
 from crowdbot.errors import printable
@@ -23,12 +24,9 @@ if TYPE_CHECKING:
 def expand(
     spec: SpecArgument,
     only: Annotated[
-        list[str] | None,
-        typer.Option(metavar="GLOB", help="Only ids that match, e.g. 'in-*-c50-*'; repeatable."),
+        list[str] | None, option("GLOB", "Only ids that match, e.g. 'in-*-c50-*'; repeatable.")
     ] = None,
-    one: Annotated[
-        str | None, typer.Option(metavar="ID", help="Print one scenario with every default.")
-    ] = None,
+    one: Annotated[str | None, option("ID", "Print one scenario with every default.")] = None,
     explain: Annotated[
         bool, typer.Option("--explain", help="With --one: say where each value comes from.")
     ] = False,

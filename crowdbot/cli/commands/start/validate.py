@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.output.checked_documents import check_documents
+from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 
 
@@ -20,9 +21,7 @@ class Format(StrEnum):
 
 
 def validate(
-    specs: Annotated[
-        list[str], typer.Argument(metavar="SPEC...", help="Files, or names of packaged suites.")
-    ],
+    specs: Annotated[list[str], argument("SPEC...", "Files, or names of packaged suites.")],
     format_: Annotated[
         Format, typer.Option("--format", help="text on stderr; json or github on stdout.")
     ] = Format.TEXT,
@@ -37,10 +36,7 @@ def validate(
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, typer.Option("--json", help="Same as --format json.")] = False,
     overrides: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set", metavar="KEY=VALUE", help="Set a value in every scenario; repeatable."
-        ),
+        list[str] | None, option("KEY=VALUE", "Set a value in every scenario; repeatable.", "--set")
     ] = None,
 ) -> None:
     """Check suites and scenarios; report every error with its position.
