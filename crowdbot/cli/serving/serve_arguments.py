@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from crowdbot.cli.shared.option import option
+from crowdbot.cli.shared.option import option, switch
 
 
 class ClockChoice(StrEnum):
@@ -45,15 +45,11 @@ Token = Annotated[
     typer.Option(help="Token that clients must give; default on the network: a new one."),
 ]
 Connect = Annotated[str | None, option("ws://HOST:PORT", "Be a client of this rosbridge server.")]
-Stamped = Annotated[
-    bool, typer.Option("--stamped", help="With --connect: commands are TwistStamped.")
-]
+Stamped = Annotated[bool, switch("--stamped", "With --connect: commands are TwistStamped.")]
 Zenoh = Annotated[
     str | None, option("tcp/HOST:PORT", "ROS 2 topics, too, through this zenoh router.")
 ]
-ZenohRouter = Annotated[
-    bool, typer.Option("--zenoh-router", help="Be the zenoh router at that endpoint.")
-]
+ZenohRouter = Annotated[bool, switch("--zenoh-router", "Be the zenoh router at that endpoint.")]
 Domain = Annotated[int, typer.Option(min=0, max=232, help="ROS_DOMAIN_ID.")]
 Distro = Annotated[DistroChoice, typer.Option(help="ROS 2 distribution of the nodes.")]
 Foxglove = Annotated[
@@ -72,5 +68,5 @@ Wait = Annotated[float | None, option("SECONDS", "Time to wait for a client; def
 Epoch = Annotated[int, typer.Option(min=0, metavar="SECONDS", help="Time at which stamps begin.")]
 RosVersion = Annotated[int, typer.Option(min=1, max=2, help="ROS 1 or ROS 2 messages.")]
 PlannerName = Annotated[str, typer.Option(help="Name of the planner that drives.")]
-Stay = Annotated[bool, typer.Option("--stay", help="After a run, wait for reset or next_scenario.")]
+Stay = Annotated[bool, switch("--stay", "After a run, wait for reset or next_scenario.")]
 References = Annotated[bool, typer.Option(help="First run the robot alone and the people alone.")]

@@ -7,10 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
-import typer
-
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import option
+from crowdbot.cli.shared.option import option, switch
 from crowdbot.core.support.text import plural
 from crowdbot.errors import CrowdbotError, InputError, UnknownNameError
 
@@ -21,8 +19,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 _FILES = (".yaml", ".yml")
 Altered = Annotated[
-    bool,
-    typer.Option("--altered", help="Include runs of scenarios that --set changed, as own suites."),
+    bool, switch("--altered", "Include runs of scenarios that --set changed, as own suites.")
 ]
 Reference = Annotated[
     str | None,

@@ -15,3 +15,8 @@ def option(metavar: str, text: str, *flags: str) -> Any:
 def argument(metavar: str, text: str) -> Any:
     """Return an argument."""
     return typer.Argument(metavar=metavar, help=text)
+
+
+def switch(flag: str, text: str) -> Any:
+    """Return an option without a value."""
+    return typer.Option(flag, help=text)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.shared.installed import installed
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 
 if TYPE_CHECKING:
     from crowdbot.core.planning.choice import PlannerPlace
@@ -56,9 +56,7 @@ Plugins = Annotated[
         "PATH", "A plugin that is not installed: file, package or project; repeatable.", "--plugin"
     ),
 ]
-NoPlugins = Annotated[
-    bool, typer.Option("--no-plugins", help="Only crowdbot's own, and those of --plugin.")
-]
+NoPlugins = Annotated[bool, switch("--no-plugins", "Only crowdbot's own, and those of --plugin.")]
 InProcess = Annotated[
     bool | None,
     typer.Option(

@@ -7,12 +7,12 @@ from typing import Annotated
 
 import typer
 
-from crowdbot.cli.shared.option import option
+from crowdbot.cli.shared.option import option, switch
 
 PagePort = Annotated[
     int, typer.Option(min=0, max=65535, help="Port of the page on 127.0.0.1; 0: a free one.")
 ]
-OpenPage = Annotated[bool, typer.Option("--open", help="Open the page in the browser.")]
+OpenPage = Annotated[bool, switch("--open", "Open the page in the browser.")]
 Rate = Annotated[
     float,
     typer.Option(

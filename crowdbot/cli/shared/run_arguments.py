@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 
 
 class RecordChoice(StrEnum):
@@ -29,10 +29,8 @@ Overrides = Annotated[
 RunSeed = Annotated[int, typer.Option(min=0, help="Run seed: sensor noise and planner.")]
 OutRoot = Annotated[Path, option("DIR", "Root of the run directories.")]
 Record = Annotated[RecordChoice, typer.Option(help="Sensors to simulate and record.")]
-AsJson = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
-AllScores = Annotated[
-    bool, typer.Option("--all", help="Print all scores, instead of the four that matter.")
-]
+AsJson = Annotated[bool, switch("--json", "JSON on stdout.")]
+AllScores = Annotated[bool, switch("--all", "Print all scores, instead of the four that matter.")]
 MeshcatPort = Annotated[
     int | None,
     typer.Option(

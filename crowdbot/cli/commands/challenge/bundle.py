@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.core.support.text import plural, size_text
 from crowdbot.dsl.suite.suite_entry import NO_SUITE
@@ -34,15 +34,10 @@ def bundle(
     team: Annotated[str, option("NAME", "Name of the team, for the leaderboard.")] = "",
     contact: Annotated[str, option("TEXT", "Whom to ask about the bundle.")] = "",
     partial: Annotated[
-        bool,
-        typer.Option("--partial", help="Pack the runs that are there, even if some are missing."),
+        bool, switch("--partial", "Pack the runs that are there, even if some are missing.")
     ] = False,
-    recordings: Annotated[
-        bool, typer.Option("--recordings", help="Pack the recordings, too.")
-    ] = False,
-    check: Annotated[
-        bool, typer.Option("--check", help="Also do what the organiser's verify does.")
-    ] = False,
+    recordings: Annotated[bool, switch("--recordings", "Pack the recordings, too.")] = False,
+    check: Annotated[bool, switch("--check", "Also do what the organiser's verify does.")] = False,
     sample: Annotated[
         int, typer.Option(min=0, metavar="N", help="--check: how many runs to make again.")
     ] = 5,
@@ -55,9 +50,7 @@ def bundle(
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="The manifest as JSON on stdout.")
-    ] = False,
+    as_json: Annotated[bool, switch("--json", "The manifest as JSON on stdout.")] = False,
 ) -> None:
     """Pack scores, hashes, scenarios and provenance of one planner's runs into one archive.
 

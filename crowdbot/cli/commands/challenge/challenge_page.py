@@ -6,8 +6,6 @@ import json
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.folder_of_bundles import (
     Accept,
@@ -16,7 +14,7 @@ from crowdbot.cli.shared.folder_of_bundles import (
     read_bundles,
     trusted_keys,
 )
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.core.support.text import plural
 
@@ -31,7 +29,7 @@ def challenge_page(
     key: Keys = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="The files as JSON on stdout.")] = False,
+    as_json: Annotated[bool, switch("--json", "The files as JSON on stdout.")] = False,
 ) -> None:
     """Write the site of a challenge: dates, rules, how to take part, scenarios, leaderboard.
 

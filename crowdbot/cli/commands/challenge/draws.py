@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, SuiteArgument, installed
 
 if TYPE_CHECKING:
@@ -22,10 +22,8 @@ _Suite = Annotated[str, argument("SUITE", "File of the suite.")]
 _Secret = Annotated[
     Path | None, option("FILE", "Seed and salt; default: NAME.secret.json beside the suite.")
 ]
-_Print = Annotated[
-    bool, typer.Option("--print", help="Print the lines and leave the suite's file as it is.")
-]
-_Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
+_Print = Annotated[bool, switch("--print", "Print the lines and leave the suite's file as it is.")]
+_Json = Annotated[bool, switch("--json", "JSON on stdout.")]
 
 
 @draws.callback()

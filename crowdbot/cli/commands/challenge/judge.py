@@ -10,7 +10,7 @@ import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.campaign_run import run_plan, worker_count
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import (
     MEMORY_GIB,
     NoPlugins,
@@ -30,8 +30,7 @@ def judge(
     jobs: Annotated[int, typer.Option(min=0, metavar="N", help="Processes; 0: one per core.")] = 0,
     cluster: Annotated[str | None, option("ADDRESS", "Scheduler of a Dask cluster.")] = None,
     not_contained: Annotated[
-        bool,
-        typer.Option("--not-contained", help="Run planners that this system does not contain."),
+        bool, switch("--not-contained", "Run planners that this system does not contain.")
     ] = False,
     planner_memory: PlannerMemory = MEMORY_GIB,
     step_budget: Annotated[

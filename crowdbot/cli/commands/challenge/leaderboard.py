@@ -10,7 +10,7 @@ import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.folder_of_bundles import Accept, Keys, read_bundles
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.text import plural
 
@@ -40,7 +40,7 @@ def leaderboard(
     key: Keys = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="The order as JSON on stdout.")] = False,
+    as_json: Annotated[bool, switch("--json", "The order as JSON on stdout.")] = False,
 ) -> None:
     """Rank the bundles of a folder, by edition and class, on one offline page.
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
+from crowdbot.cli.shared.option import switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, SuiteArgument, installed
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.support.text import plural
@@ -21,10 +22,10 @@ if TYPE_CHECKING:
 def lock(
     spec: SuiteArgument,
     check: Annotated[
-        bool, typer.Option("--check", help="Write nothing; exit 1 if the lock does not fit.")
+        bool, switch("--check", "Write nothing; exit 1 if the lock does not fit.")
     ] = False,
     redraw: Annotated[
-        bool, typer.Option("--redraw", help="Sample all agents again, even if nothing changed.")
+        bool, switch("--redraw", "Sample all agents again, even if nothing changed.")
     ] = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import (
     MEMORY_GIB,
     InProcess,
@@ -54,7 +54,7 @@ def verify(
     sample: Annotated[
         int, typer.Option(min=0, metavar="N", help="How many runs to make again; 0: none.")
     ] = 5,
-    everything: Annotated[bool, typer.Option("--all", help="Make all runs again.")] = False,
+    everything: Annotated[bool, switch("--all", "Make all runs again.")] = False,
     seed: Annotated[
         int | None,
         typer.Option(min=0, metavar="S", help="Seed of the sample; default: a new one each time."),
@@ -68,8 +68,7 @@ def verify(
         str | None, option("SPEC", "The suite, where it is not a packaged one.")
     ] = None,
     save: Annotated[
-        bool,
-        typer.Option("--save", help="Write the signed outcome to NAME.verified.json beside it."),
+        bool, switch("--save", "Write the signed outcome to NAME.verified.json beside it.")
     ] = False,
     trust: Annotated[
         list[str] | None,
@@ -85,9 +84,9 @@ def verify(
     planner_memory: PlannerMemory = MEMORY_GIB,
     not_contained: Annotated[
         bool,
-        typer.Option(
+        switch(
             "--not-contained",
-            help="Run the planner even if this system cannot keep it from files and processes.",
+            "Run the planner even if this system cannot keep it from files and processes.",
         ),
     ] = False,
     plugin: Plugins = None,

@@ -13,7 +13,7 @@ import typer
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.campaign_run import print_plan, read_seeds, run_plan, worker_count
-from crowdbot.cli.shared.option import option
+from crowdbot.cli.shared.option import option, switch
 from crowdbot.cli.shared.options import (
     EveryScenarioSet,
     Jobs,
@@ -48,12 +48,9 @@ def audit(
     overrides: EveryScenarioSet = None,
     out: Annotated[Path, option("DIR", "Root of the run directories.")] = Path("runs"),
     jobs: Jobs = 0,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Print the plan only.")] = False,
+    dry_run: Annotated[bool, switch("--dry-run", "Print the plan only.")] = False,
     adversaries: Annotated[
-        bool,
-        typer.Option(
-            "--adversaries", help="Check that no adversary is ahead of a careful planner."
-        ),
+        bool, switch("--adversaries", "Check that no adversary is ahead of a careful planner.")
     ] = False,
     careful: Annotated[
         list[str] | None,
@@ -64,7 +61,7 @@ def audit(
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="The audit as JSON on stdout.")] = False,
+    as_json: Annotated[bool, switch("--json", "The audit as JSON on stdout.")] = False,
 ) -> None:
     """Check that a suite tells careful planners from blind ones; exit code 1 if it does not.
 

@@ -10,7 +10,7 @@ import typer
 
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import option
+from crowdbot.cli.shared.option import option, switch
 from crowdbot.cli.shared.options import NoPlugins, OwnRecordings, Plugins, check_ending, installed
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.runs.run_directory import recordings_under
@@ -39,10 +39,7 @@ def realism(
     ],
     reference: OwnRecordings = None,
     robot: Annotated[
-        bool,
-        typer.Option(
-            "--robot", help="Compare how people respond to a robot with people near robots."
-        ),
+        bool, switch("--robot", "Compare how people respond to a robot with people near robots.")
     ] = False,
     seeds: Annotated[
         str | None,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import Jobs, NoPlugins, OnlyScenarios, Plugins, installed
 from crowdbot.core.support.text import plural
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 references = typer.Typer(
     add_completion=False, invoke_without_command=True, pretty_exceptions_enable=False
 )
-_Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
+_Json = Annotated[bool, switch("--json", "JSON on stdout.")]
 
 
 @references.callback()

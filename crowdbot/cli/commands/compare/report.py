@@ -14,11 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 from urllib.parse import quote
 
-import typer
-
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.open_results import Altered, Reference, open_results, suite_id
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.text import plural
 from crowdbot.errors import InputError, UnknownNameError
@@ -56,21 +54,15 @@ def report(
         Path | None, option("FILE", "Audit of the suite; default: ROOT/ID/audit.json.")
     ] = None,
     no_replay_links: Annotated[
-        bool,
-        typer.Option(
-            "--no-replay-links", help="Leave out links to replays, for a page that is moved."
-        ),
+        bool, switch("--no-replay-links", "Leave out links to replays, for a page that is moved.")
     ] = False,
     latex: Annotated[
-        bool,
-        typer.Option(
-            "--latex", help="Also write tables for LaTeX, .tex, and a figure, .pdf and .svg."
-        ),
+        bool, switch("--latex", "Also write tables for LaTeX, .tex, and a figure, .pdf and .svg.")
     ] = False,
     altered: Altered = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="What was written, as JSON.")] = False,
+    as_json: Annotated[bool, switch("--json", "What was written, as JSON.")] = False,
 ) -> None:
     """Write one offline page with the scores of planners, and its CSV and Markdown beside it.
 

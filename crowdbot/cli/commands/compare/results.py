@@ -22,7 +22,7 @@ from crowdbot.cli.shared.open_results import (
     open_results,
     with_scales,
 )
-from crowdbot.cli.shared.option import option
+from crowdbot.cli.shared.option import option, switch
 from crowdbot.core.scoring.four_scores import MAIN_SCORES
 from crowdbot.core.support.text import plural
 
@@ -51,7 +51,7 @@ _Out = Annotated[Path, option("DIR", "Root of the run directories.", "--runs", "
 _Planners = Annotated[
     list[str] | None, option("GLOB", "Only planners with such labels; repeatable.")
 ]
-_Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
+_Json = Annotated[bool, switch("--json", "JSON on stdout.")]
 _ROOT = Path("runs")
 #: Scores shown for every planner by default.
 _HEADLINES = (
@@ -84,10 +84,10 @@ def show(
         int, typer.Option(min=0, metavar="N", help="The N worst runs by --metric instead.")
     ] = 0,
     details: Annotated[
-        bool, typer.Option("--details", help="A line for each planner, with medians and counts.")
+        bool, switch("--details", "A line for each planner, with medians and counts.")
     ] = False,
     altered: Altered = False,
-    as_csv: Annotated[bool, typer.Option("--csv", help="CSV on stdout.")] = False,
+    as_csv: Annotated[bool, switch("--csv", "CSV on stdout.")] = False,
     as_json: _Json = False,
 ) -> None:
     """Show the scores of planners side by side, by metric and group.
@@ -175,9 +175,7 @@ def export(
 @results.command()
 def failures(
     out: _Out = _ROOT,
-    traceback: Annotated[
-        bool, typer.Option("--traceback", help="Print Python's tracebacks, too.")
-    ] = False,
+    traceback: Annotated[bool, switch("--traceback", "Print Python's tracebacks, too.")] = False,
     as_json: _Json = False,
 ) -> None:
     """List the runs that a campaign failed to make.
@@ -208,7 +206,7 @@ def tracking(
     ] = None,
     planner: _Planners = None,
     altered: Altered = False,
-    as_csv: Annotated[bool, typer.Option("--csv", help="CSV on stdout.")] = False,
+    as_csv: Annotated[bool, switch("--csv", "CSV on stdout.")] = False,
     as_json: _Json = False,
 ) -> None:
     """Show how well planners track people: recall, false tracks, switches and errors.
@@ -271,7 +269,7 @@ def power(
         str | None, option("crowdbot|FILE|ROOT", "These reference scores, not --runs.")
     ] = None,
     altered: Altered = False,
-    as_csv: Annotated[bool, typer.Option("--csv", help="CSV on stdout.")] = False,
+    as_csv: Annotated[bool, switch("--csv", "CSV on stdout.")] = False,
     as_json: _Json = False,
 ) -> None:
     """Show how many runs are needed to detect a difference with 80 % power, per condition.
@@ -297,7 +295,7 @@ def ladder(
     metric: Annotated[str | None, option("NAME", "The score; default: safe efficiency.")] = None,
     variant: Annotated[str, option("NAME", "Its variant.")] = "corrected",
     altered: Altered = False,
-    as_csv: Annotated[bool, typer.Option("--csv", help="CSV on stdout.")] = False,
+    as_csv: Annotated[bool, switch("--csv", "CSV on stdout.")] = False,
     as_json: _Json = False,
 ) -> None:
     """Show each planner's score on the rungs of the ladder of sensing.

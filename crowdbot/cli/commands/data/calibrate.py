@@ -10,7 +10,7 @@ import typer
 
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import option
+from crowdbot.cli.shared.option import option, switch
 from crowdbot.cli.shared.options import (
     Jobs,
     NoPlugins,
@@ -48,8 +48,7 @@ def calibrate(
         option("KEY=LOW..HIGH", "Fit this number, SI units; default: all of them."),
     ] = None,
     robot: Annotated[
-        bool,
-        typer.Option("--robot", help="Fit the response to robots to people near robots."),
+        bool, switch("--robot", "Fit the response to robots to people near robots.")
     ] = False,
     overrides: Annotated[
         list[str] | None,

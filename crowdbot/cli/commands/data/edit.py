@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import argument
+from crowdbot.cli.shared.option import argument, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 
 
@@ -18,9 +18,7 @@ def edit(
     port: Annotated[
         int, typer.Option(min=0, max=65535, metavar="PORT", help="Port; 0: a free one.")
     ] = 0,
-    browser: Annotated[
-        bool, typer.Option("--open/--no-open", help="Show the page in the browser.")
-    ] = True,
+    browser: Annotated[bool, switch("--open/--no-open", "Show the page in the browser.")] = True,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
 ) -> None:

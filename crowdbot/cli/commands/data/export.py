@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 
 if TYPE_CHECKING:
     from crowdbot.core.recording.export.bag import BagOptions
@@ -79,9 +79,9 @@ def export(
     ] = True,
     names: Annotated[
         bool,
-        typer.Option(
+        switch(
             "--ros-names/--own-names",
-            help="Bags: names usual in ROS, such as /scan, or the recording's.",
+            "Bags: names usual in ROS, such as /scan, or the recording's.",
         ),
     ] = True,
     robot: Annotated[str | None, option("NAME", "Tables: which of several robots.")] = None,
@@ -121,7 +121,7 @@ def export(
             show_default=False,
         ),
     ] = None,
-    dark: Annotated[bool, typer.Option("--dark", help="Films, pictures: dark colours.")] = False,
+    dark: Annotated[bool, switch("--dark", "Films, pictures: dark colours.")] = False,
 ) -> None:
     """Write a recording in the format of other tools, as a film, or as pictures from above.
 

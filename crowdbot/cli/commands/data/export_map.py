@@ -6,10 +6,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import option
+from crowdbot.cli.shared.option import option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, ScenarioSet, installed
 from crowdbot.cli.shared.run_arguments import ScenarioArgument, SpecArgument
 from crowdbot.errors import UsageError
@@ -29,7 +27,7 @@ def export_map(
     overrides: ScenarioSet = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Paths and size as JSON.")] = False,
+    as_json: Annotated[bool, switch("--json", "Paths and size as JSON.")] = False,
 ) -> None:
     """Write map.yaml with map.pgm for nav2, and map.geojson, of the place of a scenario.
 

@@ -6,10 +6,8 @@ import json
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import option
+from crowdbot.cli.shared.option import option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, ScenarioSet, check_ending, installed
 from crowdbot.cli.shared.run_arguments import ScenarioArgument, SpecArgument
 
@@ -23,7 +21,7 @@ def export_trial(
     overrides: ScenarioSet = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="The whole report as JSON.")] = False,
+    as_json: Annotated[bool, switch("--json", "The whole report as JSON.")] = False,
 ) -> None:
     """Write a scenario as trial XML of the original CrowdBot simulator, with its policies.
 

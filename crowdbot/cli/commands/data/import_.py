@@ -6,10 +6,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 
 if TYPE_CHECKING:
@@ -31,7 +29,7 @@ def import_(
     ] = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="The whole report as JSON.")] = False,
+    as_json: Annotated[bool, switch("--json", "The whole report as JSON.")] = False,
 ) -> None:
     """Convert scenes of other simulators to scenarios; report the outcome for each part.
 

@@ -6,16 +6,14 @@ import json
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 
 
 def weights(
     file: Annotated[Path, argument("FILE", "PyTorch's .pth of a state_dict, or .npz.")],
     out: Annotated[Path | None, option("FILE", "File to write, .npz; default: none.")] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Names and shapes as JSON.")] = False,
+    as_json: Annotated[bool, switch("--json", "Names and shapes as JSON.")] = False,
 ) -> None:
     """List or convert a network's weights without PyTorch; no code in the file is run.
 

@@ -10,13 +10,13 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 
 plugins = typer.Typer(
     add_completion=False, context_settings={"help_option_names": ["-h", "--help"]}
 )
-_Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
+_Json = Annotated[bool, switch("--json", "JSON on stdout.")]
 _LOG = logging.getLogger("crowdbot")
 
 
@@ -112,8 +112,7 @@ def new(
     name: Annotated[str, argument("NAME", "Name of the plugin: a word such as acme.")],
     out: Annotated[Path | None, option("DIR", "Folder to write; default: crowdbot-NAME.")] = None,
     planner: Annotated[
-        bool,
-        typer.Option("--planner", help="One planner alone, which sees people with the tracker."),
+        bool, switch("--planner", "One planner alone, which sees people with the tracker.")
     ] = False,
 ) -> None:
     """Write a starter package with one component of each kind, a suite and tests.

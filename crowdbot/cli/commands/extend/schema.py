@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import option
+from crowdbot.cli.shared.option import option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import UsageError
@@ -37,10 +37,7 @@ def schema(
         DocumentKind, typer.Argument(help="part: a file that others name in 'extends'.")
     ],
     canonical: Annotated[
-        bool,
-        typer.Option(
-            "--canonical", help="Schema of what crowdbot writes: numbers only, every field."
-        ),
+        bool, switch("--canonical", "Schema of what crowdbot writes: numbers only, every field.")
     ] = False,
     out: Annotated[Path | None, option("FILE", "File to write; default: standard output.")] = None,
     plugin: Plugins = None,

@@ -13,7 +13,7 @@ import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.serving.serve_arguments import AllowOrigin
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, ScenarioSet, check_ending, installed
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.text import listed
@@ -39,7 +39,7 @@ def view(
         Path | None,
         option("FILE", "File to write: .html, .svg, .png; default: ID.html; of runs compare.html."),
     ] = None,
-    open_: Annotated[bool, typer.Option("--open", help="Show it in the browser.")] = False,
+    open_: Annotated[bool, switch("--open", "Show it in the browser.")] = False,
     overrides: ScenarioSet = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
@@ -48,7 +48,7 @@ def view(
         typer.Option(min=0, max=65535, metavar="PORT", help="Play a run in Foxglove; 0: any port."),
     ] = None,
     allow_origin: AllowOrigin = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Path and facts as JSON.")] = False,
+    as_json: Annotated[bool, switch("--json", "Path and facts as JSON.")] = False,
 ) -> None:
     """Draw a scenario from above; find the replay page of a run, or compare runs on one page.
 

@@ -10,7 +10,7 @@ import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.campaign_run import print_plan, read_seeds, run_plan, worker_count
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import (
     MEMORY_GIB,
     EveryScenarioSet,
@@ -58,13 +58,13 @@ def campaign(
         typer.Option(help="Also run floors and ceilings, in at most 18 scenarios of a suite."),
     ] = True,
     retry_failed: Annotated[
-        bool, typer.Option("--retry-failed", help="Repeat runs whose planner failed.")
+        bool, switch("--retry-failed", "Repeat runs whose planner failed.")
     ] = False,
     replace_draws: ReplaceDraws = 0,
     force: Annotated[
-        bool, typer.Option("--force", help="Run everything again, calibration runs too.")
+        bool, switch("--force", "Run everything again, calibration runs too.")
     ] = False,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Print the plan only.")] = False,
+    dry_run: Annotated[bool, switch("--dry-run", "Print the plan only.")] = False,
     cluster: Annotated[str | None, option("tcp://HOST:PORT", "A Dask scheduler.")] = None,
     in_process: InProcess = None,
     planner_memory: PlannerMemory = MEMORY_GIB,

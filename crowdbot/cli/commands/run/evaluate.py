@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.errors import UnknownNameError, UsageError
 
@@ -33,9 +33,7 @@ _Metrics = Annotated[
     option("GLOB", "Which metrics; default: all but experimental ones; repeatable."),
 ]
 _Variant = Annotated[str, option("NAME|all", "Which variants of metrics.")]
-_Experimental = Annotated[
-    bool, typer.Option("--experimental", help="Score experimental metrics, too.")
-]
+_Experimental = Annotated[bool, switch("--experimental", "Score experimental metrics, too.")]
 _Robot = Annotated[str | None, option("NAME", "Which of several robots: topics below /NAME.")]
 _UserTopic = Annotated[str | None, option("TOPIC", "Twist or TwistStamped: what the user wants.")]
 _CommandTopic = Annotated[str, option("TOPIC", "The same for the final command.")]
@@ -46,13 +44,10 @@ _WMax = Annotated[float | None, option("RAD_PER_S", "Largest commanded yaw rate.
 _Answers = Annotated[Path | None, option("FILE", "CSV questionnaire,item,value: NASA-TLX, USE.")]
 _Jobs = Annotated[int, typer.Option(metavar="N", min=0, help="Processes; 0: one for each core.")]
 _Incomplete = Annotated[
-    bool,
-    typer.Option(
-        "--allow-incomplete", help="Score recordings that were cut off, as far as they go."
-    ),
+    bool, switch("--allow-incomplete", "Score recordings that were cut off, as far as they go.")
 ]
 _Out = Annotated[Path | None, option("FILE", "File to write, .csv or .json: all scores.")]
-_Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
+_Json = Annotated[bool, switch("--json", "JSON on stdout.")]
 
 
 def evaluate(

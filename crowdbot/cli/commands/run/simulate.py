@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli.shared.option import option
+from crowdbot.cli.shared.option import option, switch
 from crowdbot.cli.shared.options import (
     MEMORY_GIB,
     InProcess,
@@ -57,9 +57,7 @@ def simulate(
         typer.Option(help="Sensors to simulate and record; default: the suite's, or used."),
     ] = None,
     references: MakeReferences = True,
-    force: Annotated[
-        bool, typer.Option("--force", help="Run again, even if the run is complete.")
-    ] = False,
+    force: Annotated[bool, switch("--force", "Run again, even if the run is complete.")] = False,
     step_budget: Annotated[
         float | None, option("SECONDS", "Wall time that a planner step may take.")
     ] = None,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.text import plural
 
@@ -27,7 +27,7 @@ _File = Annotated[Path, argument("STUDY", "The study's YAML file.")]
 _Data = Annotated[
     Path | None, option("DIR", "Folder of the study's data; default: beside it, -data.")
 ]
-_Json = Annotated[bool, typer.Option("--json", help="JSON on stdout.")]
+_Json = Annotated[bool, switch("--json", "JSON on stdout.")]
 
 
 @study.callback()
@@ -84,11 +84,10 @@ def run(
     file: _File,
     participant: Annotated[str | None, option("ID", "Pseudonym of the participant.")] = None,
     synthetic: Annotated[
-        bool,
-        typer.Option("--synthetic", help="Synthetic users drive; without --page forms stay open."),
+        bool, switch("--synthetic", "Synthetic users drive; without --page forms stay open.")
     ] = False,
     page: Annotated[
-        bool, typer.Option("--page", help="With --synthetic: show the page all the same.")
+        bool, switch("--page", "With --synthetic: show the page all the same.")
     ] = False,
     port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port of the page; 0: a free one.")

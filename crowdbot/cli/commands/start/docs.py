@@ -6,10 +6,8 @@ import json
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.errors import InputError, UnknownNameError
 
@@ -37,9 +35,9 @@ def docs(
         str | None, option("TEXT", "Print the lines of all pages that contain a text.")
     ] = None,
     developers: Annotated[
-        bool, typer.Option("--developers", help="Also search the pages for crowdbot's developers.")
+        bool, switch("--developers", "Also search the pages for crowdbot's developers.")
     ] = False,
-    path: Annotated[bool, typer.Option("--path", help="Print only where the page is.")] = False,
+    path: Annotated[bool, switch("--path", "Print only where the page is.")] = False,
     as_json: AsJson = False,
 ) -> None:
     """List the pages of the documentation, print one, or search them. Works offline.

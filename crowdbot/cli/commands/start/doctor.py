@@ -11,7 +11,7 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import option
+from crowdbot.cli.shared.option import option, switch
 from crowdbot.cli.shared.run_arguments import AsJson
 
 
@@ -22,7 +22,7 @@ def doctor(
         typer.Option(help="Simulate for a moment, too: about 10 s, more the first time."),
     ] = False,
     licences: Annotated[
-        bool, typer.Option("--licences", help="List all packages that crowdbot needs, and end.")
+        bool, switch("--licences", "List all packages that crowdbot needs, and end.")
     ] = False,
     as_json: AsJson = False,
 ) -> None:

@@ -10,7 +10,7 @@ import typer
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.output.scenario_list import hash_of, print_scenarios
-from crowdbot.cli.shared.option import option
+from crowdbot.cli.shared.option import option, switch
 from crowdbot.cli.shared.options import EveryScenarioSet, NoPlugins, Plugins, installed
 from crowdbot.cli.shared.run_arguments import AsJson, SpecArgument
 from crowdbot.errors import printable
@@ -28,9 +28,9 @@ def expand(
     ] = None,
     one: Annotated[str | None, option("ID", "Print one scenario with every default.")] = None,
     explain: Annotated[
-        bool, typer.Option("--explain", help="With --one: say where each value comes from.")
+        bool, switch("--explain", "With --one: say where each value comes from.")
     ] = False,
-    count: Annotated[bool, typer.Option("--count", help="Print only how many there are.")] = False,
+    count: Annotated[bool, switch("--count", "Print only how many there are.")] = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: AsJson = False,

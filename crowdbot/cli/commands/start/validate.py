@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from crowdbot.cli.output.checked_documents import check_documents
-from crowdbot.cli.shared.option import argument, option
+from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 
 
@@ -23,18 +23,18 @@ class Format(StrEnum):
 def validate(
     specs: Annotated[list[str], argument("SPEC...", "Files, or names of packaged suites.")],
     format_: Annotated[
-        Format, typer.Option("--format", help="text on stderr; json or github on stdout.")
+        Format, switch("--format", "text on stderr; json or github on stdout.")
     ] = Format.TEXT,
     against_image: Annotated[
         bool,
-        typer.Option(
+        switch(
             "--against-image",
-            help="Compare the floor made of occupancy grids with their images, cell by cell.",
+            "Compare the floor made of occupancy grids with their images, cell by cell.",
         ),
     ] = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Same as --format json.")] = False,
+    as_json: Annotated[bool, switch("--json", "Same as --format json.")] = False,
     overrides: Annotated[
         list[str] | None, option("KEY=VALUE", "Set a value in every scenario; repeatable.", "--set")
     ] = None,
