@@ -97,6 +97,8 @@ class CompiledCost:
             every wall in range may.
         reach_with_own: True if those seconds count at the fastest and the agent's own speed
             together: the root of the sum of their squares.
+        reach_at_preferred: True if those seconds count at the preferred speed, where no function of
+            the crowd needs more; `prepare` then checks that it has all walls that it needs.
         looks_farther: True if farther walls may change a result, and the functions look for them
             where they do: by `first_collision`, or by `MORE_WALLS`.
         walls_on_the_way: True if, where gradients are followed, only those walls may change a
@@ -120,6 +122,7 @@ class CompiledCost:
     call: PluginCall | None = None
     wall_reach: tuple[float, float] | None = None
     reach_with_own: bool = False
+    reach_at_preferred: bool = False
     looks_farther: bool = False
     walls_on_the_way: bool = False
     optimum_by_nearby_walls: bool = False

@@ -40,6 +40,8 @@ class SettingsRecord:
         wall_metres, wall_seconds: centre distance beyond which no wall matters is the first plus
             the second times the fastest speed of a decision, and
         wall_own: 1 if it counts together with the own speed, as `CompiledCost.reach_with_own`.
+        wall_preferred: 1 if those seconds count at the preferred speed, as
+            `CompiledCost.reach_at_preferred`.
         wall_grid: the reach of the `SegmentGrid`, m.
         wall_way: 1 if gradients need only walls on the way, as `CompiledCost.walls_on_the_way`.
         wall_more: 1 if functions look for walls that are farther away, where these matter.
@@ -52,6 +54,7 @@ class SettingsRecord:
     wall_metres: float
     wall_seconds: float
     wall_own: float
+    wall_preferred: float
     wall_grid: float
     wall_way: float
     wall_more: float
@@ -129,6 +132,8 @@ def sort_surroundings(
 def wall_distance(around: Surroundings) -> float:
     """Return the centre distance beyond which no wall matters to the agent that decides, m."""
     settings, agent = around.settings[0], around.deciding[0]
+    if settings.wall_preferred != 0.0:
+        return min(around.reach, settings.wall_metres + settings.wall_seconds * agent.preferred)
     speed = max(agent.fastest, agent.preferred)
     if not is_clearly_shorter(agent.vx, agent.vy, speed):
         speed = max(speed, math.hypot(agent.vx, agent.vy))

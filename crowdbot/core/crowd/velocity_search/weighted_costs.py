@@ -70,6 +70,7 @@ _WALL_SETTINGS = (
     "wall_metres",
     "wall_seconds",
     "wall_own",
+    "wall_preferred",
     "wall_grid",
     "wall_way",
     "wall_more",
@@ -199,7 +200,7 @@ class WeightedCosts:
         """
         if self.parity:
             return grid_of(walls, math.inf), 0.0
-        walked = _HURRIED * float(np.max(self.agents.preferred_speed, initial=0.0))
+        walked = _HURRIED * self._preferred_speed()
         metres, seconds = self._walls_matter(self._largest_seen)
         covered = metres + seconds * (walked + change)
         return grid_of(walls, covered), covered
@@ -207,25 +208,32 @@ class WeightedCosts:
     def _built_grid(self, walls: Array, largest: float) -> SegmentGrid:
         reach, (metres, seconds) = self.reach_of(largest), self._walls_matter(largest)
         own = any(c.reach_with_own for c in self.compiled)
-        covered = min(reach, metres + seconds * self._usual_speed(own=own))
+        preferred = all(c.reach_at_preferred for c in self.compiled)
+        speed = self._preferred_speed() if preferred else self._usual_speed(own=own)
+        covered = min(reach, metres + seconds * speed)
         more = any(c.looks_farther for c in self.compiled)
         way = not more and all(
             c.walls_on_the_way or c.wall_reach == (0.0, 0.0) for c in self.compiled
         )
         if self.parity or self.vectorised:
-            metres, seconds, own, covered, way, more = reach, 0.0, False, reach, False, False
+            metres, seconds, own, preferred = reach, 0.0, False, False
+            covered, way, more = reach, False, False
         self._floor, floor = floor_of(walls, self.largest)
-        values = metres, seconds, own, covered, way, more, floor
+        values = metres, seconds, own, preferred, covered, way, more, floor
         for name, value in zip(_WALL_SETTINGS, values, strict=True):
             self._settings[name][:] = value
         return grid_of(walls, covered)
 
     def _usual_speed(self, *, own: bool) -> float:
         """Return the speed at which most decisions look for walls at most, m/s."""
-        walked = _HURRIED * float(np.max(self.agents.preferred_speed, initial=0.0))
+        walked = _HURRIED * self._preferred_speed()
         fastest = _PUSHED * float(np.max(self.agents.max_speed, initial=0.0))
         fastest_asked = min(fastest, walked + self.around) if self.around > 0.0 else fastest
         return math.hypot(fastest_asked, walked) if own else fastest_asked
+
+    def _preferred_speed(self) -> float:
+        """Return the largest one, m/s."""
+        return float(np.max(self.agents.preferred_speed, initial=0.0))
 
     def _walls_matter(self, largest: float) -> tuple[float, float]:
         """Return the centre distance (m) of walls that may change a result: a part, and seconds."""

@@ -137,6 +137,8 @@ def _prepare(
         return MORE_WALLS
     far = max(agent.preferred * own.t_max, _BRAKING * max(agent.fastest, agent.asked_radius))
     far = agent.radius + (1.0 + 1e-6) * far
+    if agent.parity == 0.0 and 0.0 < agent.walls_within < far:
+        return MORE_WALLS
     for s in range(0 if agent.parity != 0.0 else wall_count):
         if walls[s].d2 <= far * far and in_range(walls[s].d2, agent.radius, params):
             row += 1
@@ -274,6 +276,7 @@ def build(spec: ParisSpec) -> CompiledCost:
         params=record_values(_PARAMS, spec, **spec.range.cost_params()),
         weight=spec.weight,
         # Walls that are farther away are only counted.
-        wall_reach=(0.0, (1.0 + 1e-6) * max(spec.t_max, _BRAKING)),
+        wall_reach=(0.0, (1.0 + 2e-6) * max(spec.t_max, _BRAKING)),
+        reach_at_preferred=True,
         looks_farther=True,
     )
