@@ -29,7 +29,7 @@ _BAND = 1e-9  # relative, of squared distances; nearer to a limit the exact dist
 _LAST = -(2**62)
 
 
-class Columns(NamedTuple):
+class RayColumns(NamedTuple):
     """Columns being filled: their azimuths, directions in the world, and `GridArrays`."""
 
     azimuth: Array
@@ -97,7 +97,7 @@ def _cover(azimuth: Array, low: float, high: float, runs: Indices) -> int:
 
 @kernel
 def _insert(
-    columns: Columns, c: int,
+    columns: RayColumns, c: int,
     near: float, far: float, facing: float, low: float, high: float, owner: int,
 ) -> None:  # fmt: skip
     """Insert a body into column c, nearest first; equal distances keep the insertion order."""
@@ -106,7 +106,7 @@ def _insert(
 
 @inline_kernel
 def insert_before(
-    columns: Columns, c: int,
+    columns: RayColumns, c: int,
     near: float, far: float, facing: float, low: float, high: float, owner: int, rank: int,
 ) -> None:  # fmt: skip
     """Like `_insert`, but before bodies at the same distance whose owner is below ``rank``."""
@@ -136,7 +136,7 @@ def _is_before(near: float, rank: int, other: float, owner: float) -> bool:
 @kernel
 def add_disc(
     px: float, py: float, r: float, bottom: float, top: float, yaw: float, owner: int,
-    columns: Columns,
+    columns: RayColumns,
 ) -> None:  # fmt: skip
     """Insert an upright cylinder, with its axis at (px, py) from the rays' origin."""
     azimuth, cos, sin, runs = columns.azimuth, columns.cos, columns.sin, columns.runs
@@ -206,7 +206,7 @@ def covered_roughly(
 @kernel
 def add_wall(
     ox: float, oy: float, yaw: float, wall: Array, heights: Array, owner: int, reach: float,
-    columns: Columns,
+    columns: RayColumns,
 ) -> None:  # fmt: skip
     """Insert an upright plate into every column that meets it within ``reach``."""
     azimuth, cos, sin, runs = columns.azimuth, columns.cos, columns.sin, columns.runs

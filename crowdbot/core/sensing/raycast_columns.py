@@ -11,7 +11,7 @@ import math
 
 from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
 from crowdbot.core.sensing.ray_columns import (
-    Columns,
+    RayColumns,
     add_disc,
     add_wall,
     covered_roughly,
@@ -39,7 +39,7 @@ _OFTEN = 16
 
 
 @kernel
-def _turned(grid: GridArrays, yaw: float) -> Columns:
+def _turned(grid: GridArrays, yaw: float) -> RayColumns:
     """Return the empty columns of a grid, turned by its yaw in the world frame, rad."""
     c0, s0 = math.cos(yaw), math.sin(yaw)
     world_cos, world_sin, filled = grid.directions[0], grid.directions[1], grid.filled
@@ -47,13 +47,13 @@ def _turned(grid: GridArrays, yaw: float) -> Columns:
         world_cos[c] = c0 * grid.cos[c] - s0 * grid.sin[c]
         world_sin[c] = s0 * grid.cos[c] + c0 * grid.sin[c]
         filled[c] = 0
-    return Columns(grid.azimuth, world_cos, world_sin, grid.work, filled, grid.runs)
+    return RayColumns(grid.azimuth, world_cos, world_sin, grid.work, filled, grid.runs)
 
 
 @kernel
 def _add_discs(
     x: float, y: float, yaw: float, lowest: float, highest: float, max_range: float,
-    discs: Array, owner: Indices, columns: Columns,
+    discs: Array, owner: Indices, columns: RayColumns,
 ) -> None:  # fmt: skip
     """Insert all cylinders between two heights within range."""
     for i in range(discs.shape[0]):
@@ -139,7 +139,7 @@ def _farthest(low: float, high: float, directions: Array) -> float:
 @inline_kernel
 def _add_visible_wall(
     ox: float, oy: float, oz: float, yaw: float, wall: Array, heights: Array, low: float,
-    high: float, owner: int, most: float, reach: float, columns: Columns, directions: Array,
+    high: float, owner: int, most: float, reach: float, columns: RayColumns, directions: Array,
 ) -> None:  # fmt: skip
     """Insert an upright plate into every column in which no nearer one, as low and high, hides it.
 

@@ -50,6 +50,7 @@ BEYOND = {
     "E005": "tags likewise",
     "E006": "merge keys likewise",
     "E007": "several documents, or a directive",
+    "E011_xml": "no YAML",
     "E010_draw": "a name that is taken only beside another key",
     "E015": "another file",
     "E016": "characters that are escaped",
