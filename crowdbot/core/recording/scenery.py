@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 import crowdbot.core.recording.markers as markers
 import crowdbot.core.recording.messages as ros
 from crowdbot.core.geometry.optical_frame import OPTICAL_QUATERNION, optical
+from crowdbot.core.recording.flood_fill import connected
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.links import link_frames
 from crowdbot.core.recording.namespace import in_namespace
@@ -107,14 +108,11 @@ def occupancy_grid(
 
 def _forget_outside(cells: NDArray[np.int8], row: int, column: int) -> None:
     """Make the free cells around the walls unknown, unless the goal's cell is one of them."""
-    from scipy import ndimage  # takes longer to import than a map to write
-
     height, width = cells.shape
     if not (0 <= row < height and 0 <= column < width) or cells[row, column]:
         return
-    regions, _ = ndimage.label(cells == 0)
-    outside = regions == regions[0, 0]  # the rim is wider than a cell, and free all around
-    if cells[0, 0] == 0 and not outside[row, column]:
+    outside = connected(cells == 0, 0, 0)  # the rim is wider than a cell, and free all around
+    if not outside[row, column]:
         cells[outside] = _UNKNOWN
 
 
