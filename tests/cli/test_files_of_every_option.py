@@ -109,6 +109,7 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("why", "path"): ("", "why", "{}"),
     ("weights", "file"): (".pth", "weights", "{}"),
     ("view", "others"): (".yaml", "view", "RUNS", "{}", "--out", "RUNS/v.html"),
+    ("view", "reference"): ("", "view", "RUNS", "--reference", "{}", "--out", "RUNS/v.html"),
 }  # fmt: skip
 #: Parameters that name no file to read: names, numbers, addresses, and what is written.
 NO_FILES = {
@@ -126,6 +127,7 @@ NO_FILES = {
 #: Read after something else that an empty folder lacks, by a reader that the others test.
 NOT_REACHED = {
     ("bundle", "source"), ("leaderboard", "audit"), ("report", "reference"), ("report", "audit"),
+    ("view", "reference"),
     ("verify", "suite"),
 }  # fmt: skip
 #: Seconds after which a command counts as one that waits for ever.

@@ -184,6 +184,7 @@ def test_json_and_set(tmp_path: Path, capsys: Captured) -> None:
         (["view", "run", "--out", "x.png"], 2, "must end in .html"),
         (["view", "run", "--set", "seed=1"], 2, "no --set"),
         (["view", "challenge-2020", "a", "b"], 2, "are several"),
+        (["view", "challenge-2020", "a", "--reference", "crowdbot"], 2, "is not a run"),
     ],
 )
 def test_wrong_commands(
@@ -323,6 +324,13 @@ def test_runs_beside_each_other(tmp_path: Path, capsys: Captured) -> None:
     assert main(["view", runs[0], "--out", str(again)]) == 0
     first = (Path(runs[0]) / "replay.html").read_bytes()
     assert again.read_bytes() == first
+    among = tmp_path / "among.html"
+    capsys.readouterr()
+    argv = ["view", *runs, "--reference", str(tmp_path), "--out", str(among)]
+    assert main(argv) == 0
+    assert among.read_text(encoding="utf-8").count("of 3 by safe efficiency: ") == 2
+    assert main(["view", runs[0], "--reference", "crowdbot", "--out", str(among)]) == 1
+    assert "no reference run of" in capsys.readouterr().err
     assert main(["view", runs[0], made("goal_seek", other_id), "--out", str(out)]) == 2
     assert "only runs of one scenario" in capsys.readouterr().err
     (Path(runs[1]) / "run.mcap").write_bytes(b"")

@@ -1,18 +1,21 @@
-"""Results beside reference scores, and the rank of planners among these."""
+"""Results beside reference scores, and the place of planners among these."""
 
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from statistics import fmean
 
 from crowdbot.core.results.reference_file import open_references
 from crowdbot.core.results.results import Results
+from crowdbot.core.results.rows import ScoreRow
 from crowdbot.core.results.score_columns import ScoreColumns, of_runs
+from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.scoring.four_scores import PRIMARY
 from crowdbot.core.support.text import plural
+from crowdbot.core.types.score import Score
 from crowdbot.errors import InputError
 
 _REFERENCE = " (reference)"
@@ -118,10 +121,48 @@ def among_references(results: Results, known: tuple[str, ...]) -> Iterator[str]:
         if not shared or not others:
             continue
         means = {n: fmean(fmean(values[n][s]) for s in shared) for n in (planner, *others)}
-        order = sorted(means, key=lambda n: -means[n])
-        plain = {n: n if without_mark(n) == planner else without_mark(n) for n in order}
-        listed = ", ".join(f"{plain[n]} {means[n]:.2f}" for n in order)
-        yield (
-            f"{planner}: number {order.index(planner) + 1} of {len(order)} by {PRIMARY.role} in "
-            f"{plural(len(shared), 'scenario')}: {listed}"
+        place, listed = _place(planner, means)
+        yield f"{planner}: {place} in {plural(len(shared), 'scenario')}: {listed}"
+
+
+def place_of_run(run: RunRecord, scores: Iterable[Score | ScoreRow], given: Results) -> str:
+    """Return the place of one run among reference runs of its scenario, as a sentence.
+
+    Several reference runs of a planner count by their mean. One run proves nothing.
+
+    Args:
+        run: its record.
+        scores: its scores; without a value it counts as 0.
+        given: from `reference_results`.
+
+    Raises:
+        InputError: there is no reference run of the scenario.
+    """
+    label = run.planner.label
+    own = [s.value for s in scores if (s.metric, s.variant) == (PRIMARY.metric, PRIMARY.variant)]
+    runs = {
+        r.run_id: r.planner + _REFERENCE
+        for r in given.runs
+        if r.record.hashes.spec == run.hashes.spec
+    }
+    values: dict[str, list[float]] = {}
+    for score in of_runs(given.scores, set(runs)):
+        if (score.metric, score.variant) == (PRIMARY.metric, PRIMARY.variant):
+            values.setdefault(runs[score.run_id], []).append(score.value or 0.0)
+    if not values or not own:
+        there = f"{run.suite}/{run.scenario}"
+        raise InputError(
+            f"--reference: no reference run of {there}"
+            if own
+            else f"--reference: the run of {there} has no score {PRIMARY.metric}"
         )
+    means = {planner: fmean(found) for planner, found in values.items()}
+    return ": ".join(_place(label, means | {label: own[0] or 0.0}))
+
+
+def _place(planner: str, means: Mapping[str, float]) -> tuple[str, str]:
+    """Return a planner's place, and all means, the best first."""
+    order = sorted(means, key=lambda n: -means[n])
+    plain = {n: n if without_mark(n) == planner else without_mark(n) for n in order}
+    listed = ", ".join(f"{plain[n]} {means[n]:.2f}" for n in order)
+    return f"number {order.index(planner) + 1} of {len(order)} by {PRIMARY.role}", listed

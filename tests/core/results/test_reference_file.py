@@ -26,7 +26,11 @@ from crowdbot.core.results.reference_file import (
     write_references,
 )
 from crowdbot.core.results.results import Results
-from crowdbot.core.results.with_reference import among_references, with_reference
+from crowdbot.core.results.with_reference import (
+    among_references,
+    place_of_run,
+    with_reference,
+)
 from crowdbot.errors import InputError, UnknownNameError
 
 SUITE, SCENARIO = "social-guidelines", "frontal_approach"
@@ -148,6 +152,18 @@ def test_own_planners_stand_among_the_references(root: Path, file: Path) -> None
     (line,) = among_references(both, known)
     assert line.startswith("goal_seek: number 1 of 3 by safe efficiency in 1 scenario: goal_seek ")
     assert line.endswith("stand_still 0.00")
+
+
+def test_a_run_has_a_place_among_the_references(root: Path, file: Path) -> None:
+    own, given = Results.open(root), read_references(file).results
+    (run,) = (r for r in own.runs if r.planner == "goal_seek")
+    scores = [s for s in own.scores if s.run_id == run.run_id]
+    place = place_of_run(run.record, scores, given)
+    assert place.startswith("number 1 of 3 by safe efficiency: goal_seek ")
+    with pytest.raises(InputError, match="has no score safe_efficiency"):
+        place_of_run(run.record, [], given)
+    with pytest.raises(InputError, match="no reference run of"):
+        place_of_run(run.record, scores, replace(given, runs=()))
 
 
 def test_scenarios_without_a_reference_are_left_out(

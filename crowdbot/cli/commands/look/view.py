@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -21,6 +22,7 @@ from crowdbot.errors import InputError, UsageError
 
 if TYPE_CHECKING:
     from crowdbot.core.registry.registry import Registry
+    from crowdbot.core.replay import ShownRun
     from crowdbot.core.view.shapes import Drawing
 
 _FORMATS = (".html", ".svg", ".png")
@@ -48,6 +50,10 @@ def view(
         typer.Option(min=0, max=65535, metavar="PORT", help="Play a run in Foxglove; 0: any port."),
     ] = None,
     allow_origin: AllowOrigin = None,
+    reference: Annotated[
+        str | None,
+        option("crowdbot|FILE|ROOT", "Show a run's place among these reference scores."),
+    ] = None,
     as_json: Annotated[bool, switch("--json", "Path and facts as JSON.")] = False,
 ) -> None:
     """Draw a scenario from above; find the replay page of a run, or compare runs on one page.
@@ -59,6 +65,8 @@ def view(
     Example: crowdbot view challenge-2020 counter-d0500-fast-c20-r05 --out scenario.png
 
     Example: crowdbot view runs/a/dwa/seed-0 runs/a/stop_and_go/seed-0 --out compare.html
+
+    Example: crowdbot view runs/a/dwa/seed-0 --reference crowdbot
     """
     if foxglove is not None:
         _play(Path(spec), foxglove, allow_origin or ())
@@ -67,8 +75,11 @@ def view(
     if Path(spec).is_dir():
         if overrides:
             raise UsageError(f"{spec} is a run, which is over: no --set")
-        path = _replay([spec, *(others or [])], out, plugin, no_plugins=no_plugins)
+        names = [spec, *(others or [])]
+        path = _replay(names, out, reference, lambda: installed(plugin, no_plugins))
     else:
+        if reference is not None:
+            raise UsageError(f"{spec} is not a run: --reference shows the place of one")
         if len(others or []) > 1:
             raise UsageError(f"one ID is drawn at a time, and {others} are several")
         pattern = next(iter(others or []), None)
@@ -104,24 +115,42 @@ def _play(run: Path, port: int, origins: Sequence[str]) -> None:
 
 
 def _replay(
-    names: list[str], out: Path | None, plugin: list[Path] | None, *, no_plugins: bool
+    names: list[str], out: Path | None, reference: str | None, registry: Callable[[], Registry]
 ) -> Path:
-    """Return a run's page; for several runs, or with ``out``, a new one."""
+    """Return a run's page; for several runs, with ``out`` or among references a new one."""
     folders = [Path(name) for name in names]
     for folder in folders:
         if not folder.is_dir():
             raise UsageError(f"{folder} is not a run directory, and {folders[0]} is one")
-    if len(folders) == 1 and out is None:
+    if len(folders) == 1 and out is None and reference is None:
         return _own_page(folders[0])
     check_ending(out, ".html")
     from crowdbot.core.replay import write_replay
     from crowdbot.core.runs.replayed import replayed_runs
 
-    shown = replayed_runs(folders, installed(plugin, no_plugins))
+    shown = replayed_runs(folders, registry())
+    if reference is not None:
+        shown = _among(shown, folders, reference)
     path = out or Path("compare.html")
     scenario = shown[0].facts["Scenario"]
     write_replay(path, *shown, title=f"{scenario} · {listed([one.label for one in shown])}")
     return path
+
+
+def _among(shown: Sequence[ShownRun], folders: Sequence[Path], reference: str) -> list[ShownRun]:
+    """Return the runs with their places among references as a fact."""
+    from crowdbot.core.results.with_reference import place_of_run, reference_results
+    from crowdbot.core.runs.run_record import RunRecord
+
+    given = reference_results(reference)
+    places = [
+        place_of_run(RunRecord.read(folder), one.scores, given)
+        for folder, one in zip(folders, shown, strict=True)
+    ]
+    return [
+        replace(one, facts={**one.facts, "Among references": place})
+        for one, place in zip(shown, places, strict=True)
+    ]
 
 
 def _own_page(run: Path) -> Path:
