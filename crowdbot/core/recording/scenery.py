@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 import crowdbot.core.recording.markers as markers
 import crowdbot.core.recording.messages as ros
 from crowdbot.core.geometry.optical_frame import OPTICAL_QUATERNION, optical
-from crowdbot.core.recording.flood_fill import connected
 from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.links import link_frames
 from crowdbot.core.recording.namespace import in_namespace
@@ -108,6 +107,8 @@ def occupancy_grid(
 
 def _forget_outside(cells: NDArray[np.int8], row: int, column: int) -> None:
     """Make the free cells around the walls unknown, unless the goal's cell is one of them."""
+    from crowdbot.core.recording.flood_fill import connected  # numba, which a plan does not need
+
     height, width = cells.shape
     if not (0 <= row < height and 0 <= column < width) or cells[row, column]:
         return
