@@ -8,9 +8,10 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from types import ModuleType
-from typing import Any, TextIO
+from typing import Any
 
 from crowdbot.errors import printable
+from crowdbot.shown_warnings import warnings_to
 
 _LOG = logging.getLogger("crowdbot")
 #: Lists of `collected_old_names` that are open, the innermost last.
@@ -38,23 +39,11 @@ def old_name(module: str, new: ModuleType, name: str) -> Any:
 def collected_old_names() -> Iterator[list[str]]:
     """Collect warnings of deprecated names in a context, one line each; others are shown."""
     lines: list[str] = []
-    with warnings.catch_warnings():
-        usual = warnings.showwarning
 
-        def keep(
-            message: Warning | str,
-            category: type[Warning],
-            filename: str,
-            lineno: int,
-            file: TextIO | None = None,
-            line: str | None = None,
-        ) -> None:
-            if issubclass(category, OldNameWarning):
-                lines.append(f"{filename}:{lineno}: {message}")
-            else:
-                usual(message, category, filename, lineno, file, line)
+    def keep(text: str, file: str, line: int) -> None:
+        lines.append(f"{file}:{line}: {text}")
 
-        warnings.showwarning = keep
+    with warnings_to(keep, OldNameWarning):
         if not _are_errors():
             warnings.filterwarnings("default", category=OldNameWarning)
         _COLLECTED.append(lines)

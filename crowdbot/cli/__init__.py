@@ -11,11 +11,9 @@ import logging
 import os
 import re
 import sys
-import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext, redirect_stdout
 from pathlib import Path
-from typing import TextIO
 
 from crowdbot.cli.app.command_names import command_names
 from crowdbot.cli.app.mishaps import left_by, tell_of_threads
@@ -31,6 +29,7 @@ from crowdbot.errors import (
     SpecError,
     printable,
 )
+from crowdbot.shown_warnings import warnings_to
 
 __all__ = ["command_names", "main"]
 
@@ -47,7 +46,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     _start_log()
     tell_of_threads()
     try:
-        with telling_interrupts(), _plain_warnings():
+        with telling_interrupts(), warnings_to(_say_warning, RecordingWarning):
             return _run(argv)
     except CrowdbotError as error:
         _say(_text(error))
@@ -126,27 +125,9 @@ _TELLING = frozenset(
 )  # fmt: skip
 
 
-@contextmanager
-def _plain_warnings() -> Iterator[None]:
-    """Show warnings of recordings as messages, without places in crowdbot's own code."""
-    with warnings.catch_warnings():
-        usual = warnings.showwarning
-
-        def show(
-            message: Warning | str,
-            category: type[Warning],
-            filename: str,
-            lineno: int,
-            file: TextIO | None = None,
-            line: str | None = None,
-        ) -> None:
-            if issubclass(category, RecordingWarning):
-                _say(f"warning: {message}")
-            else:
-                usual(message, category, filename, lineno, file, line)
-
-        warnings.showwarning = show
-        yield
+def _say_warning(text: str, *_: object) -> None:
+    """Show a warning of a recording as a message, without a place in crowdbot's own code."""
+    _say(f"warning: {text}")
 
 
 def _wants_silence(words: Sequence[str]) -> bool:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crowdbot.cli.output.say import say
-from crowdbot.cli.shared.option import option, switch
+from crowdbot.cli.shared.option import option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 
 if TYPE_CHECKING:
@@ -23,9 +23,11 @@ def export_urdf(
     robot: Annotated[
         str, typer.Argument(help="Kind of a robot; with --spec, name of a robot in a scenario.")
     ],
-    spec: Annotated[str | None, switch("--spec", "Scenario or suite that has the robot.")] = None,
+    spec: Annotated[
+        str | None, typer.Option("--spec", help="Scenario or suite that has the robot.")
+    ] = None,
     id_: Annotated[
-        str | None, switch("--id", "Id in a suite; default: its first scenario.")
+        str | None, typer.Option("--id", help="Id in a suite; default: its first scenario.")
     ] = None,
     out: Annotated[Path | None, option("FILE", "File to write; default: standard output.")] = None,
     plugin: Plugins = None,

@@ -23,7 +23,7 @@ class Format(StrEnum):
 def validate(
     specs: Annotated[list[str], argument("SPEC...", "Files, or names of packaged suites.")],
     format_: Annotated[
-        Format, switch("--format", "text on stderr; json or github on stdout.")
+        Format, typer.Option("--format", help="text on stderr; json or github on stdout.")
     ] = Format.TEXT,
     against_image: Annotated[
         bool,

@@ -38,10 +38,7 @@ def _call(signature: Any, *given: Any) -> tuple[Any, Any]:
     Records, arrays and integers become pointers here.
     """
     pointers = types.CPointer | types.Record
-    taken = [
-        types.intp if isinstance(llvm_types, pointers) else llvm_types
-        for llvm_types in signature.args
-    ]
+    taken = [types.intp if isinstance(kind, pointers) else kind for kind in signature.args]
     for k, actual in enumerate(given):
         if isinstance(actual, types.Record | types.Array):
             taken[k] = actual

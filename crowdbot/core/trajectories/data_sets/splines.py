@@ -27,6 +27,8 @@ _COMMENT = re.compile(r"(?:^|\s)-(?:\s.*|\(.*)?$")
 #: File that has the matrix, in copies of the data set.
 _BESIDE = "H.txt"
 _DIGITS = 15
+#: Largest number of rows of a table: two hours of a hundred people.
+_MOST_ROWS = 2_000_000
 
 
 def is_spline_file(path: Path, text: str) -> bool:
@@ -55,6 +57,7 @@ def spline_table(
     step = max(1, round(rate / _ANNOTATIONS))
     splines = list(_splines(path, input_text(path, LARGEST_TABLE).splitlines()))
     matrix, notes = _matrix(path, homography, splines, rate)
+    _check_length(path, splines, step)
     rows = []
     absent = 0
     for person, points in enumerate(splines):
@@ -91,18 +94,34 @@ def _splines(path: Path, lines: Sequence[str]) -> Iterator[Array]:
         at += size
 
 
+def _check_length(path: Path, splines: Sequence[Array], step: int) -> None:
+    """Refuse third numbers other than frames of a video, such as stamps in nanoseconds.
+
+    Raises:
+        InputError: the table would have too many rows.
+    """
+    lengths = [float(np.ptp(points[:, 2])) / step for points in splines]
+    if sum(lengths) > _MOST_ROWS:
+        worst = int(np.argmax(lengths))
+        first, last = np.min(splines[worst][:, 2]), np.max(splines[worst][:, 2])
+        raise InputError(
+            f"{path}: spline {worst + 1} lasts from frame {first:.10g} to {last:.10g}; the third "
+            "number of a control point is its frame"
+        )
+
+
 def _words(line: str) -> list[str]:
     return _COMMENT.sub("", line.strip()).split()
 
 
-def _count(path: Path, rows: Sequence[tuple[int, list[str]]], at: int, what: str) -> int:
+def _count(path: Path, rows: Sequence[tuple[int, list[str]]], at: int, counted: str) -> int:
     if at >= len(rows):
-        raise InputError(f"{path}: ends where the number of {what} should be")
+        raise InputError(f"{path}: ends where the number of {counted} should be")
     number, words = rows[at]
     if len(words) != 1 or not words[0].isdigit() or len(words[0]) > _DIGITS:
         raise InputError(
-            f"{path}:{number}: '{' '.join(words)}' is not the number of {what}; files of UCY have "
-            "one above the control points (x y frame gaze)"
+            f"{path}:{number}: '{' '.join(words)}' is not the number of {counted}; files of UCY "
+            "have one above the control points (x y frame gaze)"
         )
     return int(words[0])
 

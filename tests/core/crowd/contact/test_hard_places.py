@@ -58,7 +58,7 @@ def _gap(at: Array, world: CrowdWorld) -> float:
 
 
 def _stay_out(engine: CrowdEngine, seconds: float) -> Array:
-    """Assert that nobody is in anything solid at any tick; return all people's rows at the end."""
+    """Assert that no one is in a solid at any tick; return all people's rows at the end."""
     flat = engine.initial_state()
     _, rows = s.view(flat)
     for _ in range(round(seconds * TICKS)):
@@ -81,7 +81,7 @@ def _free(count: int, world: CrowdWorld, within: tuple[float, float, float, floa
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
-def test_nobody_wraps_into_a_solid_at_the_border_of_a_torus(name: str) -> None:
+def test_no_one_wraps_into_a_solid_at_the_border_of_a_torus(name: str) -> None:
     world = CrowdWorld(
         walls=_sides(BLOCK), solids=(BLOCK,), pillars=PILLARS, firm=True,
         periodic_boundary=(0.0, WIDE, 0.0, DEEP),
@@ -96,7 +96,7 @@ def test_nobody_wraps_into_a_solid_at_the_border_of_a_torus(name: str) -> None:
 
 
 @pytest.mark.parametrize("exit_point", ["random", "offset"])
-def test_nobody_comes_back_in_a_solid_that_stands_in_a_portal(
+def test_no_one_comes_back_in_a_solid_that_stands_in_a_portal(
     exit_point: Literal["random", "offset"],
 ) -> None:
     block = np.array([(-0.5, 2.0), (1.5, 2.0), (1.5, 4.0), (-0.5, 4.0)])

@@ -116,6 +116,7 @@ def test_rows_in_pixels(tmp_path: Path) -> None:
         ("1\n1\n1 2\n", ":3: x y frame gaze are wanted, not 1 2"),
         ("1\n1\n1 2 nan 4\n", ":3: x y frame gaze are wanted"),
         ("0 - the number of splines\n", "no one is there"),
+        ("1\n2\n0 0 0 0\n1 1 1e15 0\n", r"spline 1 lasts from frame 0 to 1e\+15"),
     ],
 )
 def test_damaged_files_are_refused_at_their_line(tmp_path: Path, text: str, message: str) -> None:
