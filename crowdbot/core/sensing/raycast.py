@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y
 from crowdbot.core.sensing.ray_grid import OVERLAP, PARALLEL
-from crowdbot.core.support.compiling.compile import array_kernel
+from crowdbot.core.support.compiling.compile import array_kernel, kernel
 from crowdbot.core.types.arrays import Array
 
 
@@ -64,7 +64,7 @@ def _near_discs(
     return count
 
 
-@array_kernel
+@kernel
 def hit_wall(wall: Array, heights: Array, o: Array, dx: float, dy: float, dz: float) -> float:
     """Return the distance of one ray to one wall; inf if it misses."""
     ex, ey = wall[2] - wall[0], wall[3] - wall[1]
@@ -80,14 +80,14 @@ def hit_wall(wall: Array, heights: Array, o: Array, dx: float, dy: float, dz: fl
     return float(t)
 
 
-@array_kernel
+@kernel
 def wall_incidence(wall: Array, dx: float, dy: float) -> float:
     """Return the angle between a ray and the normal of a wall that it hits."""
     ex, ey = wall[2] - wall[0], wall[3] - wall[1]
     return math.acos(min(1.0, abs(dx * ey - dy * ex) / math.hypot(ex, ey)))
 
 
-@array_kernel
+@kernel
 def hit_cylinder(
     px: float,
     py: float,
@@ -130,7 +130,7 @@ def hit_cylinder(
     return max(enter, 0.0), lateral  # 0: the origin is inside or on the surface
 
 
-@array_kernel
+@kernel
 def cylinder_incidence(
     px: float, py: float, r: float, t: float, lateral: bool, dx: float, dy: float, dz: float
 ) -> float:
@@ -143,37 +143,40 @@ def cylinder_incidence(
     return math.acos(min(1.0, cosine))
 
 
-@array_kernel
-def _centre(discs: Array, near: NDArray[np.int64], o: Array, out: Array) -> None:
-    """Write position from the origin and radius of the near discs."""
-    for j in range(near.shape[0]):
+@kernel
+def _centre(discs: Array, near: NDArray[np.int64], count: int, o: Array, out: Array) -> None:
+    """Write position from the origin and radius of the first ``count`` near discs."""
+    for j in range(count):
         i = near[j]
         out[j, 0], out[j, 1], out[j, 2] = discs[i, X] - o[0], discs[i, Y] - o[1], discs[i, RADIUS]
 
 
-@array_kernel
+@kernel
 def _first_wall(
     walls: Array,
     heights: Array,
     near: NDArray[np.int64],
+    count: int,
     o: Array,
     dx: float,
     dy: float,
     dz: float,
 ) -> tuple[float, int]:
-    """Return the distance to the first wall that a ray hits, and -2 minus the wall's number."""
+    """Return the distance to the first near wall that a ray hits, and -2 minus its number."""
     best, hit = math.inf, -1
-    for i in near:
+    for j in range(count):
+        i = near[j]
         t = hit_wall(walls[i], heights[i], o, dx, dy, dz)
         if t < best:
             best, hit = t, -(2 + i)
     return best, hit
 
 
-@array_kernel
+@kernel
 def _first_disc(
     discs: Array,
     near: NDArray[np.int64],
+    count: int,
     gap: Array,
     centred: Array,
     best: float,
@@ -185,7 +188,8 @@ def _first_disc(
     """Return the distance to the first near disc hit before ``best``, its place, and the side.
 
     Args:
-        discs, near, gap: all discs; numbers of the near ones, nearest first; distances to these.
+        discs, near, count, gap: all discs; numbers of the near ones, nearest first; how many there
+            are; distances to these.
         centred: position from the origin and radius of the near ones.
         best: distance of the nearest hit so far, m.
         oz: height of the origin, m.
@@ -196,7 +200,7 @@ def _first_disc(
         surface.
     """
     winner, side_hit = -1, False
-    for j in range(near.shape[0]):
+    for j in range(count):
         if gap[j] > best:
             break
         px, py, r = centred[j, 0], centred[j, 1], centred[j, 2]
@@ -241,13 +245,13 @@ def cast_rays(
         if k == 0 or o[0] != origins[k - 1, 0] or o[1] != origins[k - 1, 1]:
             wall_count = _near_walls(walls, o[0], o[1], max_range, near_wall)
             disc_count = _near_discs(discs, o[0], o[1], max_range, gap, near)
-            _centre(discs, near[:disc_count], o, disc)
+            _centre(discs, near, disc_count, o, disc)
         dx, dy, dz = directions[k, 0], directions[k, 1], directions[k, 2]
         length = math.sqrt(dx * dx + dy * dy + dz * dz)
         dx, dy, dz = dx / length, dy / length, dz / length
-        best, hit = _first_wall(walls, wall_heights, near_wall[:wall_count], o, dx, dy, dz)
+        best, hit = _first_wall(walls, wall_heights, near_wall, wall_count, o, dx, dy, dz)
         best, winner, side_hit = _first_disc(
-            discs, near[:disc_count], gap, disc, best, o[2], dx, dy, dz
+            discs, near, disc_count, gap, disc, best, o[2], dx, dy, dz
         )
         if best > max_range:
             continue
