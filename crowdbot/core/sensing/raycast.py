@@ -18,7 +18,7 @@ from crowdbot.core.support.compiling.compile import array_kernel, kernel
 from crowdbot.core.types.arrays import Array
 
 
-@array_kernel
+@kernel
 def segment_gap(wall: Array, x: float, y: float) -> float:
     """Return the distance from a point to a segment, m."""
     ex, ey = wall[2] - wall[0], wall[3] - wall[1]
@@ -30,7 +30,7 @@ def segment_gap(wall: Array, x: float, y: float) -> float:
     return math.hypot(px - s * ex, py - s * ey)
 
 
-@array_kernel
+@kernel
 def _near_walls(walls: Array, x: float, y: float, max_range: float, out: NDArray[np.int64]) -> int:
     """Write the indices of the walls within range; return their number."""
     count = 0
@@ -41,7 +41,7 @@ def _near_walls(walls: Array, x: float, y: float, max_range: float, out: NDArray
     return count
 
 
-@array_kernel
+@kernel
 def _near_discs(
     discs: Array, x: float, y: float, max_range: float, gap: Array, out: NDArray[np.int64]
 ) -> int:

@@ -16,7 +16,7 @@ from crowdbot.plugin import (
     Pose,
     Scene,
     SensorInfo,
-    array_kernel,
+    kernel,
     mount_pose,
     nearest_on_segment,
     sensor_pose_in_world,
@@ -61,7 +61,7 @@ class Bumper(DescribedSensor):
         return pressed
 
 
-@array_kernel
+@kernel
 def _press(
     x: float, y: float, begin: float, span: float, ring: float, height: float,
     people: Array, radius: Array, present: NDArray[np.bool_], pillars: Array,
@@ -83,7 +83,7 @@ def _press(
             _mark(px - x, py - y, begin, span, pressed)
 
 
-@array_kernel
+@kernel
 def _mark(px: float, py: float, begin: float, span: float, pressed: Array) -> None:
     """Press the sector that contains the direction to (px, py), if any."""
     way = (math.atan2(py, px) - begin) % (2.0 * math.pi)
