@@ -32,13 +32,18 @@ def first_farther(
     t = _NEARER * (agent.walls_within - agent.radius) / speed if speed > 0.0 else math.inf
     if t >= first:
         return first
+    if floor.per_metre == 0.0:
+        return _in_rows(0, int(floor.number), False, ux, uy, first, limit, agent)
+    wide, deep = floor.columns / floor.per_metre, floor.rows / floor.per_metre
+    t = max(t, _enters(floor.left, wide, agent.px, ux), _enters(floor.bottom, deep, agent.py, uy))
+    if not t < first:
+        return first
     x, y = agent.px + t * ux, agent.py + t * uy
     i = math.floor((x - floor.left) * floor.per_metre)
     j = math.floor((y - floor.bottom) * floor.per_metre)
-    if floor.per_metre == 0.0:
-        return _in_rows(0, int(floor.number), False, ux, uy, first, limit, agent)
-    if not (0 <= i < floor.columns and 0 <= j < floor.rows):
-        return _in_rows(0, int(floor.number), False, ux, uy, first, limit, agent)
+    if _left(i, floor.columns, ux) or _left(j, floor.rows, uy):
+        return first
+    i, j = max(0, min(i, int(floor.columns) - 1)), max(0, min(j, int(floor.rows) - 1))
     begins = integers_at(floor.first)
     while 0 <= i < floor.columns and 0 <= j < floor.rows and SAFE * t < first:
         cell = int(j * floor.columns + i)
@@ -53,6 +58,26 @@ def first_farther(
         if ty <= tx:
             j += 1 if uy > 0.0 else -1
     return first
+
+
+@array_kernel
+def _enters(border: float, width: float, start: float, u: float) -> float:
+    """Return the time from which the way is between a border and the other one, s.
+
+    Negative if it is already; ``inf`` if it never will be.
+    """
+    before, after = border - start, start - border - width  # m; positive: not there yet
+    if u > 0.0:
+        return before / u
+    if u < 0.0:
+        return after / -u
+    return math.inf if max(before, after) > 0.0 else -math.inf
+
+
+@array_kernel
+def _left(i: int, columns: float, u: float) -> bool:
+    """Return True if column (or row) i is beyond the grid, and the way goes farther from it."""
+    return bool((i < 0 and u <= 0.0) or (i >= columns and u >= 0.0))
 
 
 @array_kernel

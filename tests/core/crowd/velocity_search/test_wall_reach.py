@@ -136,6 +136,18 @@ def test_walls_are_looked_up_by_someone_outside_of_their_box_and_by_someone_who_
     assert np.array_equal(given, whole)
 
 
+@pytest.mark.parametrize("kind", ["moussaid", "van_toll"])
+def test_walls_are_looked_up_on_ways_that_leave_their_box_and_that_come_into_it(kind: str) -> None:
+    walls, rng = _rooms(np.random.default_rng(8)), np.random.default_rng(9)
+    angle = rng.uniform(0.0, 2.0 * math.pi, 60)
+    at = rng.uniform(28.0, 45.0, 60) * np.array([np.cos(angle), np.sin(angle)])
+    velocity = rng.normal(0.0, 1.5, (60, 2)) * rng.choice([0.0, 1.0], (60, 2), p=[0.2, 0.8])
+    given, whole = (
+        _states(kind, whole, walls, (at[0], at[1]), velocity) for whole in (False, True)
+    )
+    assert np.array_equal(given, whole)
+
+
 @pytest.mark.parametrize("horizon", [0.3, 2.0, 9.0])
 def test_half_planes_of_far_walls_and_people_change_no_optimum_in_a_crowd(horizon: float) -> None:
     rng = np.random.default_rng(6)
