@@ -68,11 +68,9 @@ def _parts(described: Description) -> dict[str, list[str]]:
 
 
 def _resists(described: Description, link: str) -> bool:
-    """Return True if a link has moments of inertia; SDFormat gives those that it does not state."""
+    """Return True if a link has moments of inertia."""
     inertia = described.links[link].find("inertial/inertia")
-    if inertia is None:
-        return described.format == "sdf"
-    return any(_moment(inertia, name) for name in _MOMENTS)
+    return inertia is not None and any(_moment(inertia, name) for name in _MOMENTS)
 
 
 def impossible_moments(described: Description) -> Iterator[str]:

@@ -21,6 +21,7 @@ from crowdbot.core.robots.convex_piece import is_piece
 from crowdbot.core.robots.joint import KNOWN, Joint, child_of, sdf_joint, urdf_joint
 from crowdbot.core.robots.plain_xacro import is_macro, write_out
 from crowdbot.core.robots.sdf_frames import written_out
+from crowdbot.core.robots.sdf_inertia import write_out_inertias
 from crowdbot.core.robots.sdf_nested import without_nested
 from crowdbot.core.robots.sdf_poses import plain_poses
 from crowdbot.core.robots.xml import matrix, name_of, number, numbers, pose_of
@@ -287,7 +288,7 @@ def parse_description(text: str) -> Description:
     plain_poses(model)
     flat, nested = without_nested(model)
     made, written = written_out(flat, version)
-    all_notes = (*notes, *nested, *written)
+    all_notes = (*notes, *nested, *written, *write_out_inertias(made))
     return Description(text, "sdf", made, version if made is model else "1.9", all_notes)
 
 
@@ -360,12 +361,12 @@ def _check_circle(link: str, below: tuple[str, ...]) -> None:
 
 
 def _mass(link: Xml.Element, kind: Format) -> float:
-    """Return the mass of a link, kg; 1 kg in SDFormat by default."""
+    """Return the mass of a link, kg; a link of a URDF without an inertial weighs nothing."""
     mass = link.find("inertial/mass")
     if mass is None:
-        if kind == "urdf" and link.find("inertial") is not None:
+        if link.find("inertial") is not None:
             raise PluginError(f"the inertial of '{name_of(link)}' has no mass")
-        return 0.0 if kind == "urdf" else 1.0
+        return 0.0
     text = mass.get("value", "") if kind == "urdf" else mass.text or ""
     return number(text, f"the mass of '{name_of(link)}'")
 

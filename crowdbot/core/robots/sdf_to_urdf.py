@@ -46,7 +46,7 @@ def _link(link: Xml.Element, source: Xml.Element) -> None:
 
 def _inertial(inertial: Xml.Element, source: Xml.Element) -> None:
     write_origin(inertial, pose_of(source))
-    Xml.SubElement(inertial, "mass", value=source.findtext("mass", "0").strip())
+    Xml.SubElement(inertial, "mass", value=source.findtext("mass", "").strip())
     moments = {k: source.findtext(f"inertia/{k}", "0").strip() for k in _MOMENTS}
     Xml.SubElement(inertial, "inertia", moments)
 
@@ -67,7 +67,10 @@ def _shape(geometry: Xml.Element, source: Xml.Element) -> None:
         radius, _, half = numbers_in(radii, f"the radii of '{name_of(source)}'")
         Xml.SubElement(geometry, "cylinder", radius=f"{radius:g}", length=f"{2.0 * half:g}")
         return
-    raise InputError(f"URDF has no shape like that of '{name_of(source)}'")
+    kind = next((shape.tag for shape in source.findall("geometry/*")), "nothing")
+    raise InputError(
+        f"'{name_of(source)}' has the shape '{kind}', which URDF lacks; use {', '.join(_SHAPES)}"
+    )
 
 
 def _material(part: Xml.Element, source: Xml.Element) -> None:
