@@ -8,6 +8,9 @@ from contextlib import contextmanager
 
 from crowdbot.core.support.gc_throttle import usual_gc
 
+#: Not empty while `gc_frozen` has frozen objects; counting these takes 15 ms.
+_frozen: list[bool] = []
+
 
 @contextmanager
 def gc_frozen() -> Iterator[None]:
@@ -18,14 +21,16 @@ def gc_frozen() -> Iterator[None]:
     created in the context, such as a run's diagram; otherwise the collector would wait for tens of
     thousands of objects, that is some seventy runs or 180 MB.
     """
-    if gc.get_freeze_count():  # the code that froze objects before has to unfreeze them
+    if _frozen or gc.get_freeze_count():  # the code that froze objects before has to unfreeze them
         with usual_gc():
             yield
         return
     gc.freeze()
+    _frozen.append(True)
     try:
         with usual_gc():
             yield
     finally:
         gc.collect()
         gc.unfreeze()
+        _frozen.clear()

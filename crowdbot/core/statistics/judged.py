@@ -62,6 +62,28 @@ def judge(
     return ComparisonVerdict(reason=forbidden)
 
 
+def loses_at_most(table: Table, name: Name, a: str, b: str, margin: float, *, alpha: float) -> bool:
+    """Return True if a mean loss of ``a`` beside ``b`` of more than ``margin`` is excluded.
+
+    A test of non-inferiority with chance alpha / 2 of a wrong True: that of `judge`, with the
+    margin added to the gain of each pair.
+
+    Args:
+        table: table of the runs.
+        name: score that is higher or lower for better, and not a rate.
+        a, b: labels.
+        margin: in the score's unit.
+        alpha: level of the two-sided test.
+    """
+    better = table.label(name).better
+    one, two = (_Side.of(table, name, planner, better, None) for planner in (a, b))
+    gains, kept, open_ = _gains(one, two, _worst(table, name, better, (one, two)))
+    gains = gains + margin
+    if open_ or not kept.any() or gains.sum() <= 0.0:
+        return False
+    return p_value(gains, table.clusters.part(kept)) <= alpha
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _Side:
     """One planner's values in all rows of the table, with higher as better.

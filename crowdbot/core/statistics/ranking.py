@@ -2,10 +2,12 @@
 
 A planner is ahead of another if it is worse in none of safety, efficiency and acceptance, and
 better in efficiency or acceptance. A planner that is only safer is not ahead: robots that park or
-quit are safe, too. Everything else is a tie, or a trade of one for the other. Verdicts are about
-means, with Holm's correction for all tests of one call (`comparison`). The correction guards
+quit are safe, too. Everything else is a tie, open, or a trade of one for the other. Verdicts are
+about means, with Holm's correction for all tests of one call (`comparison`). The correction guards
 against a false *better*; it would also hide a loss, and so help a false *ahead*. A loss therefore
-stands in the way at its own p value already.
+stands in the way at its own p value already. Nor may few runs hide one: who gains in efficiency
+must be shown to lose at most 0.05 in acceptance, and the other way round; else the pair is
+open.
 """
 
 from __future__ import annotations
@@ -17,17 +19,23 @@ from typing import Literal
 import numpy as np
 
 from crowdbot.core.statistics.comparison import Comparison, compare, with_verdict
+from crowdbot.core.statistics.judged import loses_at_most
 from crowdbot.core.statistics.sign_flip import holm
 from crowdbot.core.statistics.table import Name, Table
 
 Aspect = Literal["safety", "efficiency", "acceptance"]
-Standing = Literal["ahead", "behind", "tied", "traded"]
+Standing = Literal["ahead", "behind", "tied", "traded", "open"]
 
 #: The score of each aspect: the first that the runs have.
 SCORES: Mapping[Aspect, tuple[Name, ...]] = {
     "safety": (("contacts_per_km", "at_fault"),),
     "efficiency": (("safe_efficiency", "corrected"),),
     "acceptance": (("acceptance", "corrected"), ("intrusion", "rate")),
+}
+#: Largest loss in a score, in its unit, of a planner that is ahead by another one.
+MARGINS: Mapping[Name, float] = {
+    ("safe_efficiency", "corrected"): 0.05,
+    ("acceptance", "corrected"): 0.05,
 }
 
 
@@ -38,7 +46,8 @@ class Ranked:
     Attributes:
         planner, other: labels.
         standing: of ``planner``; ``traded``: better in one aspect, worse in another, of which at
-            least one holds with Holm's correction.
+            least one holds with Holm's correction; ``open``: better in one, and a loss in
+            another of more than `MARGINS` is not excluded.
         aspects: aspect -> comparison, as far as the runs have the scores.
     """
 
@@ -63,13 +72,13 @@ def rank(table: Table, pairs: Iterable[tuple[str, str]], alpha: float = 0.05) ->
     p = np.array([compared[i][0].p for i in tested], dtype=float)
     corrected = dict(zip(tested, holm(p).tolist(), strict=True))
     sides: dict[tuple[str, str], list[_Side]] = {}
-    for i, (pair, aspect, _) in enumerate(tests):
+    for i, (pair, aspect, name) in enumerate(tests):
         one = with_verdict(*compared[i], corrected.get(i), alpha)
         sign = compared[i][1].sign if one.p is not None and one.p <= alpha else 0
-        sides.setdefault(pair, []).append(_Side(aspect, one, sign))
+        sides.setdefault(pair, []).append(_Side(aspect, name, one, sign))
     return tuple(
         Ranked(
-            planner=a, other=b, standing=_standing(found),
+            planner=a, other=b, standing=_standing(table, found, alpha),
             aspects={side.aspect: side.comparison for side in found},
         )
         for (a, b), found in sides.items()
@@ -81,6 +90,7 @@ class _Side:
     """One aspect of a pair; ``sign`` is that of its difference, 0 unless p <= alpha by itself."""
 
     aspect: Aspect
+    name: Name
     comparison: Comparison
     sign: int
 
@@ -89,12 +99,24 @@ def _first(table: Table, scores: Iterable[Name]) -> Name | None:
     return next((name for name in scores if name in table.names), None)
 
 
-def _standing(sides: Sequence[_Side]) -> Standing:
+def _standing(table: Table, sides: Sequence[_Side], alpha: float) -> Standing:
     """Return the standing; the rule is the same from both planners' points of view."""
-    weighed = {side.comparison.verdict for side in sides if side.aspect != "safety"}
+    weighed = [side for side in sides if side.aspect != "safety"]
+    verdicts = {side.comparison.verdict for side in weighed}
     signs = {side.sign for side in sides}
-    if "better" in weighed:
-        return "traded" if -1 in signs else "ahead"
-    if "worse" in weighed:
-        return "traded" if 1 in signs else "behind"
-    return "tied"
+    if "better" not in verdicts and "worse" not in verdicts:
+        return "tied"
+    if {-1, 1} <= signs:
+        return "traded"
+    ahead = "better" in verdicts
+    if all(_little_lost(table, side, ahead, alpha) for side in weighed if not side.sign):
+        return "ahead" if ahead else "behind"
+    return "open"
+
+
+def _little_lost(table: Table, side: _Side, ahead: bool, alpha: float) -> bool:
+    """Return False if the planner that gains may lose more than its margin in this aspect."""
+    margin = MARGINS.get(side.name)
+    pair = (side.comparison.a, side.comparison.b)
+    winner, other = pair if ahead else pair[::-1]
+    return margin is None or loses_at_most(table, side.name, winner, other, margin, alpha=alpha)

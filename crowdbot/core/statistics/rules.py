@@ -66,11 +66,11 @@ class Orders:
             f"{first} is ahead of {', '.join(other for a, other in apart if a == first)}"
             for first in dict.fromkeys(a for a, _ in apart)
         ]
-        tied = len(self.pairs) - len(apart)
+        rest = len(self.pairs) - len(apart)
         if not sentences:
             return "no planner is ahead of another by the ranking rule"
         return "; ".join(sentences) + (
-            f"; {tied} of {len(self.pairs)} pairs are tied" if tied else ""
+            f"; {rest} of {len(self.pairs)} pairs have no order" if rest else ""
         )
 
 
@@ -120,7 +120,7 @@ def _by_first(*aspects: Aspect) -> Callable[[Ranked], Standing]:
 _RULES: Mapping[str, tuple[str, Callable[[Ranked], Standing]]] = {
     "the ranking rule": (
         "Ahead is who is worse in none of safety, efficiency and acceptance, and better in "
-        "efficiency or acceptance.",
+        "efficiency or acceptance, with a loss of more than 0.05 in the other excluded.",
         _by_rule,
     ),
     "efficiency alone": ("Better in safe efficiency.", _by_first("efficiency")),
@@ -144,7 +144,7 @@ def _ranks(
 
 
 def _led(pair: Ranked) -> tuple[str, str] | None:
-    """Return who is ahead of whom; None if the pair is tied or traded."""
+    """Return who is ahead of whom; None if the pair has no order."""
     if pair.standing == "ahead":
         return pair.planner, pair.other
     return (pair.other, pair.planner) if pair.standing == "behind" else None

@@ -1,4 +1,4 @@
-"""The ranking rule: what is ahead, behind, tied and traded."""
+"""The ranking rule: what is ahead, behind, tied, traded and open."""
 
 from __future__ import annotations
 
@@ -98,6 +98,15 @@ def test_the_correction_hides_no_loss() -> None:
     assert one.verdict == "not distinguishable"
     assert found[0].aspects["acceptance"].verdict == "better"
     assert {x.standing for x in found} == {"traded"}
+
+
+@pytest.mark.parametrize(("spread", "standing"), [(0.02, "ahead"), (0.2, "open")])
+def test_few_runs_hide_no_loss(spread: float, standing: str) -> None:
+    """Who gains in acceptance is ahead only if a loss in efficiency above 0.05 is excluded."""
+    found = rank(table((0.595, 2.0, 0.03), spread=spread), [("a", "b")])[0]
+    assert found.aspects["acceptance"].verdict == "better"
+    assert found.standing == standing
+    assert orders(table((0.595, 2.0, 0.03), spread=spread)).rule.ranks["b"] == 1 + (spread < 0.1)
 
 
 def test_the_verdict_is_a_sentence() -> None:
