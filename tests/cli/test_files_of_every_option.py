@@ -32,6 +32,9 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("bundle", "source"): (".yaml", "bundle", "RUNS", "--check", "--source", "{}"),
     ("calibrate", "crowd"): (".yaml", "calibrate", "{}"),
     ("calibrate", "reference"): (".csv", "calibrate", "rvo", "--reference", "{}"),
+    ("calibrate", "homography"): (
+        ".txt", "calibrate", "rvo", "--reference", "a.csv", "--homography", "{}",
+    ),
     ("campaign", "suites"): (".yaml", "campaign", "{}", "--planner", "dwa", "--out", "RUNS"),
     ("campaign", "planner"): (
         ".yaml", "campaign", SHORT, "--planner", "{}", "--out", "RUNS", "--no-floors",
@@ -60,6 +63,7 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("export-map", "spec"): (".yaml", "export-map", "{}"),
     ("export-trial", "spec"): (".yaml", "export-trial", "{}", "--out", "RUNS/trial.xml"),
     ("export-urdf", "spec"): (".yaml", "export-urdf", "robot", "--spec", "{}"),
+    ("import", "homography"): (".txt", "import", "a.csv", "--homography", "{}"),
     ("import", "files"): (".xml", "import", "{}", "--out", "RUNS/imported.yaml"),
     ("info", "file"): (".mcap", "info", "{}"),
     ("leaderboard", "folder"): ("", "leaderboard", "{}", "--out", "RUNS/l.html"),
@@ -73,6 +77,9 @@ TAKEN: dict[tuple[str, str], tuple[str, ...]] = {
     ("lock", "spec"): (".yaml", "lock", "{}"),
     ("realism", "crowd"): (".yaml", "realism", "{}"),
     ("realism", "reference"): (".csv", "realism", "rvo", "--reference", "{}"),
+    ("realism", "homography"): (
+        ".txt", "realism", "rvo", "--reference", "a.csv", "--homography", "{}",
+    ),
     ("recover", "file"): (".mcap", "recover", "{}"),
     ("references make", "suites"): (".yaml", "references", "make", "{}", "--runs", "RUNS"),
     ("references make", "extend"): (

@@ -41,6 +41,16 @@ OwnRecordings = Annotated[
         "(TrajNet++), .txt, .vsp (ETH, UCY), a bag of ROS or BAG:/TOPIC; repeatable.",
     ),
 ]
+PixelsToMetres = Annotated[
+    str | None,
+    option(
+        "FILE|M", "Where places are pixels: a file with the 3 x 3 matrix to metres, or m/pixel."
+    ),
+]
+FrameRate = Annotated[
+    float | None,
+    option("HZ", "Frames per second, where a table counts frames, or of a data set's video."),
+]
 ScenarioSet = Annotated[
     list[str] | None, option("KEY=VALUE", "Set a value of the scenario; repeatable.", "--set")
 ]

@@ -18,9 +18,28 @@ if TYPE_CHECKING:
     from crowdbot.core.realism.near_robots.measure import RobotRealism
     from crowdbot.core.realism.near_robots.reference import RobotReference
     from crowdbot.core.registry.registry import Registry
+    from crowdbot.core.trajectories.data_sets.homography import VideoScale
 
 #: Draws by default: the index of single draws varies by 0.02.
 DRAWS = 2
+
+
+def of_people(homography: str | None, frame_rate: float | None, *, robot: bool) -> VideoScale:
+    """Return the scale of recorded people's tables.
+
+    Raises:
+        UsageError: there is one for tables with a robot, whose sizes are metres.
+        InputError: as of `video_scale`.
+    """
+    from crowdbot.core.trajectories.data_sets.homography import video_scale
+
+    scale = video_scale(homography, frame_rate)
+    if scale and robot:
+        raise UsageError(
+            "--homography and --frame-rate are for tables of people alone; those of --robot have "
+            "metres and seconds"
+        )
+    return scale
 
 
 def robot_realism(

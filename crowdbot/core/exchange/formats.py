@@ -11,6 +11,7 @@ from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import RowTable
 from crowdbot.core.exchange.scene import Draft
 from crowdbot.core.registry.registry import Registry
+from crowdbot.core.trajectories.data_sets.homography import AS_THEY_SAY, VideoScale
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,12 +23,14 @@ class Context:
         registry: the installed components.
         name: name of the document.
         opened: the files that were opened, by their resolved paths.
+        scale: of tables of recorded people.
     """
 
     report: Report
     registry: Registry
     name: str
     opened: dict[Path, OpenedScene] = field(default_factory=dict)
+    scale: VideoScale = AS_THEY_SAY
 
     def open(self, path: Path) -> OpenedScene:
         """Open a file; one that is given and named by another is read once.

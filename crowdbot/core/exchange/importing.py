@@ -12,13 +12,15 @@ from crowdbot.core.exchange.clearing import step_out
 from crowdbot.core.exchange.formats import Context, SceneFormat
 from crowdbot.core.exchange.opened import OpenedScene
 from crowdbot.core.exchange.overlaps import enter_in_turn
+from crowdbot.core.exchange.recordings import RECORDINGS
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.scene import Draft, id_of
 from crowdbot.core.exchange.ways_out import keep_ways
 from crowdbot.core.exchange.write import WrittenLine, document
 from crowdbot.core.registry.registry import Registry
+from crowdbot.core.trajectories.data_sets.homography import AS_THEY_SAY, VideoScale
 from crowdbot.dsl.text.diagnostics import Diagnostic
-from crowdbot.errors import SpecError
+from crowdbot.errors import InputError, SpecError
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,24 +42,34 @@ class Imported:
     formats: list[str]
 
 
-def import_files(paths: Sequence[Path], name: str, registry: Registry) -> Imported:
+def import_files(
+    paths: Sequence[Path], name: str, registry: Registry, scale: VideoScale = AS_THEY_SAY
+) -> Imported:
     """Read files of other programs as scenarios that validate.
 
     Args:
         paths: the files, in any order; those that they name are found beside them.
         name: name of the document, without its ending.
         registry: the installed components.
+        scale: of tables of recorded people.
 
     Raises:
+        InputError: a scale is given, and no file is such a table.
         SpecError: E401 to E403, a file cannot be read, is of no known format, or does not make a
             valid scenario; with positions in the files.
     """
     report = Report()
-    context = Context(report, registry, id_of(name))
+    context = Context(report, registry, id_of(name), scale=scale)
     opened = list({id(file): file for file in map(context.open, paths)}.values())
     scenes: list[Draft] = []
     read: list[str] = []
-    for found, files in _by_format(opened).items():
+    by_format = _by_format(opened)
+    if scale and RECORDINGS.name not in by_format:
+        raise InputError(
+            f"{opened[0].path}: a homography and a frame rate are for {RECORDINGS.title}, and this "
+            f"is {FORMATS[next(iter(by_format))].title}"
+        )
+    for found, files in by_format.items():
         scenes += FORMATS[found].read(files, context)
         read.append(FORMATS[found].title)
         for root in (root for file in files for root in file.roots):

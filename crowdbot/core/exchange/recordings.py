@@ -6,6 +6,8 @@ import math
 import re
 from collections.abc import Sequence
 
+import numpy as np
+
 from crowdbot.core.exchange.formats import Context, SceneFormat
 from crowdbot.core.exchange.item import LARGEST, Item
 from crowdbot.core.exchange.opened import OpenedScene
@@ -13,12 +15,14 @@ from crowdbot.core.exchange.report import UNKNOWN, Report
 from crowdbot.core.exchange.rows import Row, RowTable
 from crowdbot.core.exchange.scene import Draft, around, id_of
 from crowdbot.core.exchange.trial.replays import HEADER
+from crowdbot.core.trajectories.data_sets.homography import VideoScale, projected
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
 from crowdbot.errors import SpecError
 
 _CELLS = re.compile(r"[,;\t]")
 _NAMES = {"t": ("t", "time", "timestamp"), "id": ("id", "agent", "agent_id", "person", "ped_id"),
           "x": ("x", "pos_x", "posx"), "y": ("y", "pos_y", "posy"),
+          "frame": ("frame", "frame_id", "frame_number"),
           "entity": ("entity", "type", "kind")}  # fmt: skip
 #: Columns that follow from the places.
 _FOLLOWING = {"yaw", "heading", "theta", "angle", "orientation", "vx", "vy", "vel_x", "vel_y",
@@ -29,7 +33,7 @@ _NUMBERED = re.compile(r"(\d{1,9})$")
 RECORDING = RowTable(
     "CSV with a header",
     (
-        Row("time, id, x, y", "crowd.policy replay.file"),
+        Row("time or frame, id, x, y", "crowd.policy replay.file"),
         Row("yaw, vx, vy and the like", "", "they follow from the places"),
         Row("entity robot", "", "a planner drives the robot here"),
     ),
@@ -51,7 +55,7 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     """
     people: dict[int, list[tuple[float, float, float]]] = {}
     for file in files:
-        for ident, points in _people(file, context.report).items():
+        for ident, points in _people(file, context.report, context.scale).items():
             if ident in people:
                 raise SpecError([Diagnostic("E402", f"person {ident} is in two files", file.top)])
             people[ident] = points
@@ -71,11 +75,17 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     return [scene]
 
 
-def _people(file: OpenedScene, report: Report) -> dict[int, list[tuple[float, float, float]]]:
+def _people(
+    file: OpenedScene, report: Report, scale: VideoScale
+) -> dict[int, list[tuple[float, float, float]]]:
     lines = file.text.split("\n")
     head = _CELLS.split(lines[0])
     columns = _columns(head)
     bare = not columns
+    if columns and "t" not in columns and scale.frame_rate is None:
+        mark = Mark(file.source, 0, 0, max(1, len(lines[0])))
+        message = "its times are numbers of frames; --frame-rate says how many a second has"
+        raise SpecError([Diagnostic("E402", message, mark)])
     number = _NUMBERED.search(file.path.stem)
     found: dict[int, list[tuple[float, float, float]]] = {}
     robots: list[_Row] = []
@@ -89,7 +99,7 @@ def _people(file: OpenedScene, report: Report) -> dict[int, list[tuple[float, fl
             continue
         row.end(len(head))
         ident = int(number[1]) if bare and number else row.whole("id") if not bare else 0
-        point = (row.number("t"), row.number("x"), row.number("y"))
+        point = (row.time(scale.frame_rate), row.number("x"), row.number("y"))
         points = found.setdefault(ident, [])
         marks.setdefault(ident, row.mark)
         if points and point[0] <= points[-1][0]:
@@ -101,7 +111,20 @@ def _people(file: OpenedScene, report: Report) -> dict[int, list[tuple[float, fl
     for ident in (ident for ident, points in found.items() if len(points) == 1):
         person = whole.add(Item(f"person {ident}", marks[ident]))
         report.left_out(person, "it has one line only: recorded people need two")
-    return {ident: points for ident, points in found.items() if len(points) > 1}
+    return {
+        ident: _in_metres(file, points, scale) for ident, points in found.items() if len(points) > 1
+    }
+
+
+def _in_metres(
+    file: OpenedScene, points: list[tuple[float, float, float]], scale: VideoScale
+) -> list[tuple[float, float, float]]:
+    """Return points (t, x, y) with x and y in metres."""
+    if scale.homography is None:
+        return points
+    rows = np.array(points)
+    rows[:, 1:] = projected(file.path, scale.homography, rows[:, 1:])
+    return [(t, x, y) for t, x, y in rows.tolist()]
 
 
 def _columns(head: Sequence[str]) -> dict[str, int]:
@@ -113,7 +136,8 @@ def _columns(head: Sequence[str]) -> dict[str, int]:
         for theirs in known[::-1]
         if theirs in names
     }
-    return found if {"t", "id", "x", "y"} <= set(found) else {}
+    timed = "t" in found or "frame" in found
+    return found if timed and {"id", "x", "y"} <= set(found) else {}
 
 
 def _record(file: OpenedScene, report: Report, head: Sequence[str], bare: bool) -> Item:
@@ -158,6 +182,11 @@ class _Row:
         if not abs(value) <= LARGEST:
             self.refuse(f"{name} is {self.text(name)[:40]!r}, and has to be a finite number")
         return value
+
+    def time(self, frame_rate: float | None) -> float:
+        """Return its time, s."""
+        value = self.number("t" if "t" in self._columns else "frame")
+        return value if frame_rate is None else value / frame_rate
 
     def whole(self, name: str) -> int:
         """Return a cell as a whole number that is not negative."""

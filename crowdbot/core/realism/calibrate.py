@@ -32,6 +32,7 @@ from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.scenarios.named_crowds import open_crowd
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.text_files import LARGEST_TABLE, input_bytes, input_text
+from crowdbot.core.trajectories.data_sets.homography import AS_THEY_SAY, VideoScale
 from crowdbot.errors import CrowdbotError, InputError
 
 #: Spread of the first generation, as a share of each parameter's range.
@@ -55,6 +56,7 @@ class FitTask:
         plugins, allowed: as `discover` takes them.
         files: the user's recordings; empty: those shipped with crowdbot.
         warm_up, duration: times for each corridor, s.
+        scale: of tables among the recordings.
     """
 
     crowd: str
@@ -64,11 +66,12 @@ class FitTask:
     files: tuple[str, ...] = ()
     warm_up: float = 5.0
     duration: float = 7.0
+    scale: VideoScale = AS_THEY_SAY
 
     @property
     def reference(self) -> RealismReference:
         """Return the recorded people: the first half for the fit, the second held out."""
-        return _reference(self.files)
+        return _reference(self.files, self.scale)
 
     @property
     def ceiling(self) -> float:
@@ -78,7 +81,9 @@ class FitTask:
     @property
     def inputs(self) -> list[Any]:
         """Return the values that identify this fit in its log."""
-        return [self.crowd, self.overrides, [digest(Path(f)) for f in self.files]]
+        files: list[Any] = [digest(Path(f)) for f in self.files]
+        scale = [self.scale.homography, self.scale.frame_rate] if self.scale else []
+        return [self.crowd, self.overrides, files + scale]
 
     def loss(self, overrides: Sequence[str], seed: int) -> float:
         """Return the loss of a crowd, see `loss`."""
@@ -290,5 +295,5 @@ def registry_of(plugins: tuple[str, ...], allowed: tuple[str, ...] | None) -> Re
 
 
 @cache
-def _reference(files: tuple[str, ...]) -> RealismReference:
-    return read_reference([Path(f) for f in files]) if files else shipped()
+def _reference(files: tuple[str, ...], scale: VideoScale) -> RealismReference:
+    return read_reference([Path(f) for f in files], scale) if files else shipped()

@@ -16,6 +16,7 @@ from crowdbot.core.realism.model import CrowdModel, avoid_nobody, ghosts
 from crowdbot.core.realism.recordings import read_tracks
 from crowdbot.core.realism.statistics import Cell, Statistics, statistics_of
 from crowdbot.core.realism.tracks import CorridorTracks
+from crowdbot.core.trajectories.data_sets.homography import AS_THEY_SAY, VideoScale
 from crowdbot.errors import InputError
 
 SHIPPED = "recorded_corridors.json"
@@ -147,13 +148,17 @@ def reference_of(
     return reference
 
 
-def read_reference(files: Sequence[Path]) -> RealismReference:
+def read_reference(files: Sequence[Path], scale: VideoScale = AS_THEY_SAY) -> RealismReference:
     """Read a reference from the user's files, in the formats of `read_tracks`.
+
+    Args:
+        files: recordings.
+        scale: of tables among them.
 
     Raises:
         InputError: a file cannot be read, or there is nothing to compare in it.
     """
-    return reference_of([read_tracks(f) for f in files], [str(f) for f in files])
+    return reference_of([read_tracks(f, scale) for f in files], [str(f) for f in files])
 
 
 def floors_of(seeds: Sequence[int]) -> dict[str, Statistics]:

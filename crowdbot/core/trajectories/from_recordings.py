@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike
 import crowdbot.core.trajectories.own_recordings as own
 from crowdbot.core.support.arguments import mapping_of, number_of, path_of, point_of
 from crowdbot.core.trajectories.bag.tables import bag_tables
+from crowdbot.core.trajectories.data_sets.homography import Homography, in_metres
 from crowdbot.core.trajectories.data_sets.readers import eth_ucy_table, split_robot, trajnet_table
-from crowdbot.core.trajectories.data_sets.splines import Homography
 from crowdbot.core.trajectories.message_columns import QUATERNION
 from crowdbot.core.trajectories.plausibility.findings import implausible
 from crowdbot.core.trajectories.raw_table import ColumnNames, RawTable
@@ -57,6 +57,7 @@ class FromRecordings:
         trips: Path | str | None = None,
         *,
         frame_rate: float | None = None,
+        homography: Homography | None = None,
         columns: TableColumns | None = None,
         contacts: Path | str | Mapping[str, ArrayLike] | None = None,
         **options: Unpack[TableOptions],
@@ -78,6 +79,8 @@ class FromRecordings:
             trips: agent, t0, t1, reached (0 or 1): one row a trip.
             frame_rate: frames per second, where times are numbers of frames; None: they are not, or
                 a comment states it.
+            homography: where positions are pixels: the matrix (3, 3) to metres, its file, or
+                metres per pixel; velocities and headings in the tables are then left out.
             columns: names of columns where they differ:
                 ``{"robot": {"x": "pos_x"}, "agents": {"id": "track"}}``.
             contacts: t0, t1, agent (-1: a wall), impulse, peak_force, relative_speed, optionally
@@ -114,7 +117,8 @@ class FromRecordings:
             for n, p in files.items()
             if p is not None
         }
-        return _made(cls, in_seconds(tables, frame_rate), options, contacts=as_columns)
+        placed = {name: in_metres(table, homography) for name, table in tables.items()}
+        return _made(cls, in_seconds(placed, frame_rate), options, contacts=as_columns)
 
     @classmethod
     @takes(TableOptions)
@@ -206,6 +210,7 @@ class FromRecordings:
         scene: int | None = None,
         robot: int | None = None,
         frame_rate: float | None = None,
+        homography: Homography | None = None,
         **options: Unpack[DataSetOptions],
     ) -> Self:
         """Read people of TrajNet++ (``.ndjson``).
@@ -216,6 +221,7 @@ class FromRecordings:
             robot: number of a person who is taken for the robot; the run is as long as that
                 person is there. None: people alone.
             frame_rate: frames per second; None: as the data set has it (2.5 annotations a second).
+            homography: where positions are pixels, as for `from_csv`.
             options: all further keywords are those of `from_csv`.
 
         Raises:
@@ -225,7 +231,7 @@ class FromRecordings:
         Warns:
             RecordingWarning: units or frames cannot be what they should be.
         """
-        table = trajnet_table(path_of("path", path), scene, frame_rate)
+        table = in_metres(trajnet_table(path_of("path", path), scene, frame_rate), homography)
         return _made(cls, _people_and_robot(table, robot), options)
 
     @classmethod

@@ -463,7 +463,7 @@ def in_seconds(tables: Mapping[str, RawTable], frame_rate: float | None) -> Mapp
             if rate is None:
                 raise InputError(
                     f"{table.name}: times are numbers of frames; a comment above the header, "
-                    "'# framerate: 25', or frame_rate=25 says how many there "
+                    "'# framerate: 25', or frame_rate=25 (--frame-rate 25) says how many there "
                     "are in a second"
                 )
         made[name] = table if rate is None else _without_frames(table, rate)

@@ -11,7 +11,15 @@ import typer
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.option import option, switch
-from crowdbot.cli.shared.options import NoPlugins, OwnRecordings, Plugins, check_ending, installed
+from crowdbot.cli.shared.options import (
+    FrameRate,
+    NoPlugins,
+    OwnRecordings,
+    PixelsToMetres,
+    Plugins,
+    check_ending,
+    installed,
+)
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.runs.run_directory import recordings_under
 from crowdbot.core.support.atomic_write import atomic_write
@@ -23,6 +31,7 @@ if TYPE_CHECKING:
     from crowdbot.core.realism.measure import Realism
     from crowdbot.core.realism.reference import RealismReference
     from crowdbot.core.registry.registry import Registry
+    from crowdbot.core.trajectories.data_sets.homography import VideoScale
 
 #: With more crowds than this, only the first draw is compared.
 _FEW = 4
@@ -38,6 +47,8 @@ def realism(
         ),
     ],
     reference: OwnRecordings = None,
+    homography: PixelsToMetres = None,
+    frame_rate: FrameRate = None,
     robot: Annotated[
         bool, switch("--robot", "Compare how people respond to a robot with people near robots.")
     ] = False,
@@ -66,10 +77,11 @@ def realism(
         crowdbot realism --robot giving_way
     """
     from crowdbot.cli.shared.campaign_run import read_seeds
-    from crowdbot.cli.shared.robot_realism import DRAWS, robot_realism
+    from crowdbot.cli.shared.robot_realism import DRAWS, of_people, robot_realism
     from crowdbot.core.realism.page import render
 
     check_ending(out, ".html")
+    scale = of_people(homography, frame_rate, robot=robot)
     registry = installed(plugin, no_plugins)
     if robot:
         draws = read_seeds(seeds or f"1..{DRAWS}")
@@ -77,7 +89,7 @@ def realism(
             crowd, reference or [], registry, overrides or [], draws, out=out, as_json=as_json
         )
         return
-    beside = _reference(reference)
+    beside = _reference(reference, scale)
     path = Path(crowd)
     if path.is_dir() or path.suffix.lower() == ".mcap":
         if overrides:
@@ -94,10 +106,10 @@ def realism(
         say(f"wrote {out}")
 
 
-def _reference(files: Sequence[Path] | None) -> RealismReference:
+def _reference(files: Sequence[Path] | None, scale: VideoScale) -> RealismReference:
     from crowdbot.core.realism.reference import read_reference, shipped
 
-    return read_reference(files) if files else shipped()
+    return read_reference(files, scale) if files else shipped()
 
 
 def _simulated(

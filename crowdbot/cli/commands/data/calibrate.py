@@ -12,9 +12,11 @@ from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.option import option, switch
 from crowdbot.cli.shared.options import (
+    FrameRate,
     Jobs,
     NoPlugins,
     OwnRecordings,
+    PixelsToMetres,
     Plugins,
     check_ending,
     installed,
@@ -43,6 +45,8 @@ def calibrate(
         ),
     ],
     reference: OwnRecordings = None,
+    homography: PixelsToMetres = None,
+    frame_rate: FrameRate = None,
     fit: Annotated[
         list[str] | None,
         option("KEY=LOW..HIGH", "Fit this number, SI units; default: all of them."),
@@ -79,6 +83,7 @@ def calibrate(
         crowdbot calibrate giving_way --robot --fit clearance=0.1..0.4 --generations 5
     """
     from crowdbot.cli.shared.campaign_run import worker_count
+    from crowdbot.cli.shared.robot_realism import of_people
     from crowdbot.core.realism.calibrate import FitTask
     from crowdbot.core.realism.calibrate import fit as run
     from crowdbot.core.realism.near_robots.calibrate import RobotFitTask
@@ -86,13 +91,15 @@ def calibrate(
 
     check_ending(out, ".yaml", ".yml")
     registry = installed(plugin, no_plugins)
-    task = (RobotFitTask if robot else FitTask)(
-        crowd=str(Path(crowd).resolve()) if Path(crowd).is_file() else crowd,
-        overrides=tuple(overrides or ()),
-        plugins=tuple(str(p.resolve()) for p in plugin or ()),
-        allowed=() if no_plugins else None,
-        files=tuple(str(f.resolve()) for f in reference or ()),
-    )
+    scale = of_people(homography, frame_rate, robot=robot)
+    plain: dict[str, Any] = {
+        "crowd": str(Path(crowd).resolve()) if Path(crowd).is_file() else crowd,
+        "overrides": tuple(overrides or ()),
+        "plugins": tuple(str(p.resolve()) for p in plugin or ()),
+        "allowed": () if no_plugins else None,
+        "files": tuple(str(f.resolve()) for f in reference or ()),
+    }
+    task = RobotFitTask(**plain) if robot else FitTask(**plain, scale=scale)
     parameters = parameters_of(
         _opened(task.crowd, registry, task.overrides, robot), fit or (), robot=robot
     )

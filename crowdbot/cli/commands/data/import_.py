@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.option import argument, option, switch
-from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
+from crowdbot.cli.shared.options import (
+    FrameRate,
+    NoPlugins,
+    PixelsToMetres,
+    Plugins,
+    check_ending,
+    installed,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,6 +34,8 @@ def import_(
     out: Annotated[
         Path | None, option("FILE", "File to write, .yaml; default: NAME.yaml, here.")
     ] = None,
+    homography: PixelsToMetres = None,
+    frame_rate: FrameRate = None,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
     as_json: Annotated[bool, switch("--json", "The whole report as JSON.")] = False,
@@ -36,13 +45,17 @@ def import_(
     Example: crowdbot import Circle10.xml RVO.xml --out circle.yaml
 
     Example: crowdbot import Wheelchair_demo_config.xml --out wheelchair.yaml
+
+    Example: crowdbot import tracks.csv --homography H.txt --frame-rate 25
     """
     from crowdbot.core.exchange.checked import write
     from crowdbot.core.exchange.importing import import_files
+    from crowdbot.core.trajectories.data_sets.homography import video_scale
 
     check_ending(out, ".yaml", ".yml")
+    scale = video_scale(homography, frame_rate)
     target = out or Path(f"{files[0].stem}.yaml")
-    found = import_files(files, target.stem, installed(plugin, no_plugins))
+    found = import_files(files, target.stem, installed(plugin, no_plugins), scale)
     written = write(target, found.lines, found.scenes)
     say(json.dumps(_facts(found, written), indent=2) if as_json else _text(found, written))
 

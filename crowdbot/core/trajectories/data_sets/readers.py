@@ -11,12 +11,8 @@ import numpy as np
 
 import crowdbot.core.trajectories.plausibility.exchanged as exchanged
 from crowdbot.core.support.text_files import LARGEST_TABLE, input_text
-from crowdbot.core.trajectories.data_sets.splines import (
-    Homography,
-    is_spline_file,
-    projected,
-    spline_table,
-)
+from crowdbot.core.trajectories.data_sets.homography import Homography, matrix_of, projected
+from crowdbot.core.trajectories.data_sets.splines import is_spline_file, spline_table
 from crowdbot.core.trajectories.plausibility.times import CREEPING
 from crowdbot.core.trajectories.raw_table import RawTable
 from crowdbot.core.trajectories.table_columns import (
@@ -135,7 +131,7 @@ def eth_ucy_table(
         columns[name] = columns[name] * (unit_in(header) or found.unit)
     if homography is not None:
         places = np.column_stack([columns["x"], columns["y"]])
-        columns["x"], columns["y"] = projected(path, homography, places).T
+        columns["x"], columns["y"] = projected(path, matrix_of(homography), places).T
         columns = {n: c for n, c in columns.items() if n not in ("vx", "vy")}
     if assumed:
         whole_numbers(raw, "frame", "id")

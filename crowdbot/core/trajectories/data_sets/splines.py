@@ -11,16 +11,14 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from crowdbot.core.support.text_files import LARGEST_TABLE, input_text
+from crowdbot.core.trajectories.data_sets.homography import Homography, matrix_of, projected
 from crowdbot.core.trajectories.plausibility.times import PERSON_SPEED
 from crowdbot.core.trajectories.raw_table import RawTable
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
-#: Matrix (3, 3) from positions in a file to metres, a file that holds it, or metres per pixel.
-Homography = ArrayLike | Path | str
 #: Frames per second of the videos, and annotations per second of the tables made of them.
 _VIDEO, _ANNOTATIONS = 25.0, 2.5
 _COMMENT = re.compile(r"(?:^|\s)-(?:\s.*|\(.*)?$")
@@ -63,7 +61,7 @@ def spline_table(
     for person, points in enumerate(splines):
         frames, first = np.unique(points[:, 2], return_index=True)
         grid = np.arange(np.ceil(frames[0] / step) * step, frames[-1] + 0.5, step)
-        place = _projected(path, matrix, points[first, :2])
+        place = projected(path, matrix, points[first, :2])
         absent += len(grid) == 0
         x, y = (np.interp(grid, frames, place[:, k]) for k in (0, 1))
         rows += [(f / rate, person, *xy) for f, *xy in zip(grid, x, y, strict=True)]
@@ -142,10 +140,10 @@ def _matrix(
     """Return the matrix (3, 3) from positions to metres, and what was assumed."""
     beside = path.parent / _BESIDE
     if homography is not None:
-        return _given(homography), []
+        return matrix_of(homography), []
     speed = _speed(splines, rate)
     if beside.is_file():
-        return _given(beside), [f"positions become metres by {_BESIDE} beside it"]
+        return matrix_of(beside), [f"positions become metres by {_BESIDE} beside it"]
     if speed <= PERSON_SPEED:
         return np.eye(3), [
             f"positions are taken for metres: people walk at {speed:.2g} m/s (median)"
@@ -153,8 +151,8 @@ def _matrix(
     raise InputError(
         f"{path}: positions are pixels (people move by {speed:.3g} a second, median), and nothing "
         f"says how large one is: put {_BESIDE} of the data set, a matrix of 3 x 3 from pixels to "
-        "metres, beside it, or call Trajectories.from_eth_ucy(path, homography=...) with such a "
-        "matrix, its file, or metres per pixel"
+        "metres, beside it, or give such a matrix, its file, or metres per pixel: --homography on "
+        "the command line, Trajectories.from_eth_ucy(path, homography=...) in Python"
     )
 
 
@@ -166,48 +164,3 @@ def _speed(splines: Sequence[Array], rate: float) -> float:
     if not len(moved):
         return 0.0
     return float(np.median(np.hypot(moved[:, 0], moved[:, 1]) / moved[:, 2])) * rate
-
-
-def _given(homography: Homography) -> Array:
-    """Return the matrix that is given as numbers, as one number, or as a file.
-
-    Raises:
-        InputError: it is neither, or the file cannot be read.
-    """
-    name = "homography"
-    values: ArrayLike | list[list[str]] = []
-    if isinstance(homography, Path | str):
-        name = str(homography)
-        lines = input_text(Path(homography), LARGEST_TABLE).replace(",", " ").splitlines()
-        values = [line.split() for line in lines if line.strip() and line[0] not in "#%"]
-    else:
-        values = homography
-    try:
-        matrix = np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
-        matrix = np.zeros(0)
-    if matrix.ndim == 0:
-        matrix = np.diag([float(matrix), float(matrix), 1.0])
-    if matrix.shape != (3, 3) or not np.all(np.isfinite(matrix)) or np.linalg.det(matrix) == 0.0:
-        raise InputError(
-            f"{name}: neither an invertible matrix of 3 x 3 numbers, from positions in the file to "
-            "metres, nor metres per pixel"
-        )
-    return matrix
-
-
-def projected(path: Path, homography: Homography, places: Array) -> Array:
-    """Return places (K, 2) in metres.
-
-    Raises:
-        InputError: there is no such matrix, or it takes a place to infinity.
-    """
-    return _projected(path, _given(homography), places)
-
-
-def _projected(path: Path, matrix: Array, places: Array) -> Array:
-    seen = np.column_stack([places, np.ones(len(places))]) @ matrix.T
-    if np.any(np.abs(seen[:, 2]) < 1e-9):
-        raise InputError(f"{path}: the homography takes a position to infinity: the inverse one?")
-    projected: Array = seen[:, :2] / seen[:, 2:]
-    return projected
