@@ -45,21 +45,22 @@ def judge(
     """Return the direction and the p value of two planners in a score that has a direction."""
     one, two = (_Side.of(table, name, planner, better, reference) for planner in (a, b))
     worst = _worst(table, name, better, (one, two))
-    forbidden = ""
-    for sign, own, other in ((1, one, two), (-1, two, one)):
+    reasons = list[str]()
+    for sign, planner, own, other in ((1, a, one, two), (-1, b, two, one)):
         gains, kept, open_ = _gains(own, other, worst)
-        if not kept.any() or gains.sum() <= 0.0:
-            continue
-        planner = a if sign > 0 else b
-        if open_:
-            forbidden = f"{planner} has no value in {plural(open_, 'pair')}"
+        if not kept.any():
             continue
         last = int((own.last & kept).sum())
-        reason = f"{plural(last, 'run')} of {planner} without a value count as the worst"
-        return ComparisonVerdict(
-            sign, p_value(gains, table.clusters.part(kept)), reason if last else ""
-        )
-    return ComparisonVerdict(reason=forbidden)
+        runs = f"{plural(last, 'run')} of {planner} without a value"
+        if gains.sum() <= 0.0:
+            reasons += [f"with {runs} as the worst it does not gain"] if last else []
+            continue
+        reasons += [f"{runs} count as the worst"] if last else []
+        if not open_:
+            p = p_value(gains, table.clusters.part(kept))
+            return ComparisonVerdict(sign, p, "; ".join(reasons))
+        reasons.append(f"{planner} has no value in {plural(open_, 'pair')}")
+    return ComparisonVerdict(reason="; ".join(reasons))
 
 
 def loses_at_most(table: Table, name: Name, a: str, b: str, margin: float, *, alpha: float) -> bool:
