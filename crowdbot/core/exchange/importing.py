@@ -125,7 +125,7 @@ _ELSEWHERE = (
     *((tag, f"XML of JuPedSim before 1.0 {_NOT_READ}")
       for tag in ("geometry", "JuPedSim", "routing")),
     *((tag, f"SUMO's XML {_NOT_READ}") for tag in ("routes", "net", "additional")),
-    *((ending, _TRACKS) for ending in (".vsp", ".txt", ".tsv", ".ndjson")),
+    *((ending, _TRACKS) for ending in (".vsp", ".txt", ".tsv", ".ndjson", ".csv")),
 )  # fmt: skip
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -16,14 +16,17 @@ from crowdbot.core.exchange.rows import Row, RowTable
 from crowdbot.core.exchange.scene import Draft, around, id_of
 from crowdbot.core.exchange.trial.replays import HEADER
 from crowdbot.core.trajectories.data_sets.homography import VideoScale, projected
+from crowdbot.core.trajectories.table_columns import FRAMES, USUAL_NAMES, unit_of, without_unit
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
 from crowdbot.errors import SpecError
 
 _CELLS = re.compile(r"[,;\t]")
-_NAMES = {"t": ("t", "time", "timestamp"), "id": ("id", "agent", "agent_id", "person", "ped_id"),
-          "x": ("x", "pos_x", "posx"), "y": ("y", "pos_y", "posy"),
-          "frame": ("frame", "frame_id", "frame_number"),
-          "entity": ("entity", "type", "kind")}  # fmt: skip
+_NAMES = {
+    "t": ("t", *(name for name in USUAL_NAMES["t"] if name not in FRAMES)),
+    "frame": FRAMES,
+    **{name: (name, *USUAL_NAMES[name]) for name in ("id", "x", "y")},
+    "entity": ("entity", "type", "kind"),
+}
 #: Columns that follow from the places.
 _FOLLOWING = {"yaw", "heading", "theta", "angle", "orientation", "vx", "vy", "vel_x", "vel_y",
               "velocity_x", "velocity_y", "speed"}  # fmt: skip
@@ -79,7 +82,7 @@ def _people(
     file: OpenedScene, report: Report, scale: VideoScale
 ) -> dict[int, list[tuple[float, float, float]]]:
     lines = file.text.split("\n")
-    head = _CELLS.split(lines[0])
+    head = _split(lines[0])
     columns = _columns(head)
     bare = not columns
     if columns and "t" not in columns and scale.frame_rate is None:
@@ -87,18 +90,20 @@ def _people(
         message = "its times are numbers of frames; --frame-rate says how many a second has"
         raise SpecError([Diagnostic("E402", message, mark)])
     number = _NUMBERED.search(file.path.stem)
+    names = _names([_split(line) for line in lines[1:]], columns)
+    units = {name: unit_of(name, head[at].strip().strip('"'), 1.0) for name, at in columns.items()}
     found: dict[int, list[tuple[float, float, float]]] = {}
     robots: list[_Row] = []
     marks: dict[int, Mark] = {}
     for at in range(0 if bare else 1, len(lines)):
         if not lines[at].strip():
             continue
-        row = _Row(file, at, _CELLS.split(lines[at]), columns or _BARE)
+        row = _Row(file, at, _split(lines[at]), columns or _BARE, units)
         if not bare and "entity" in columns and row.text("entity").lower().startswith("robot"):
             robots.append(row)
             continue
         row.end(len(head))
-        ident = int(number[1]) if bare and number else row.whole("id") if not bare else 0
+        ident = int(number[1]) if bare and number else row.person(names) if not bare else 0
         point = (row.time(scale.frame_rate), row.number("x"), row.number("y"))
         points = found.setdefault(ident, [])
         marks.setdefault(ident, row.mark)
@@ -127,9 +132,23 @@ def _in_metres(
     return [(t, x, y) for t, x, y in rows.tolist()]
 
 
+def _names(rows: Sequence[Sequence[str]], columns: Mapping[str, int]) -> dict[str, int]:
+    """Return the numbers of people with names, as they appear; none if all have numbers."""
+    at = columns.get("id", 0)
+    found = dict.fromkeys(row[at].strip().strip('"') for row in rows if len(row) > at)
+    if not columns or not any(c.isalpha() for name in found for c in name):
+        return {}
+    return {name: number for number, name in enumerate(found)}
+
+
+def _split(line: str) -> list[str]:
+    """Return the cells of a line; between them are commas, semicolons or tabs, or else blanks."""
+    return _CELLS.split(line) if _CELLS.search(line) else line.split()
+
+
 def _columns(head: Sequence[str]) -> dict[str, int]:
     """Return our name -> column of a header; empty without a header."""
-    names = [cell.strip().strip('"').lower() for cell in head]
+    names = [without_unit(cell.strip().strip('"')).lower() for cell in head]
     found = {
         ours: names.index(theirs)
         for ours, known in _NAMES.items()
@@ -151,7 +170,7 @@ def _record(file: OpenedScene, report: Report, head: Sequence[str], bare: bool) 
         name = cell.strip().strip('"') or f"column {at + 1}"
         if at not in used:
             mark = Mark(file.source, 0, column, max(1, len(cell)))
-            known = bare or name.lower() in _FOLLOWING
+            known = bare or without_unit(name).lower() in _FOLLOWING
             other = whole.add(Item(f"column {at + 1}" if bare else name, mark))
             report.left_out(other, table.rows[1].note if known else UNKNOWN)
         column += len(cell) + 1
@@ -162,9 +181,11 @@ class _Row:
     """One line, whose cells know their place."""
 
     def __init__(
-        self, file: OpenedScene, line: int, cells: Sequence[str], columns: dict[str, int]
-    ) -> None:
+        self, file: OpenedScene, line: int, cells: Sequence[str], columns: dict[str, int],
+        units: Mapping[str, float],
+    ) -> None:  # fmt: skip
         self._file, self._line, self._cells, self._columns = file, line, cells, columns
+        self._units = units
 
     def text(self, name: str) -> str:
         """Return a cell as text."""
@@ -181,12 +202,16 @@ class _Row:
             value = math.nan
         if not abs(value) <= LARGEST:
             self.refuse(f"{name} is {self.text(name)[:40]!r}, and has to be a finite number")
-        return value
+        return value * self._units.get(name, 1.0)
 
     def time(self, frame_rate: float | None) -> float:
         """Return its time, s."""
         value = self.number("t" if "t" in self._columns else "frame")
         return value if frame_rate is None else value / frame_rate
+
+    def person(self, names: Mapping[str, int]) -> int:
+        """Return the number of its person, from names if people have some."""
+        return names[self.text("id")] if names else self.whole("id")
 
     def whole(self, name: str) -> int:
         """Return a cell as a whole number that is not negative."""
@@ -214,9 +239,11 @@ def _is_recording(file: OpenedScene) -> bool:
     if file.kind != "text":
         return False
     first = next((line for line in file.text.split("\n") if line.strip()), "")
-    cells = [cell.strip() for cell in _CELLS.split(first)]
+    cells = [cell.strip() for cell in _split(first)]
     numbers = all(re.fullmatch(r"[-+0-9.eE]+", cell) for cell in cells)
-    return len(cells) >= 3 and (bool(_columns(cells)) or (numbers and len(cells) <= 5))
+    # Four numbers are a frame, a person and a place in other files.
+    bare = numbers and len(cells) in (3, 5) and _CELLS.search(first) is not None
+    return bool(_columns(cells)) or bare
 
 
 RECORDINGS = SceneFormat(

@@ -29,7 +29,7 @@ from crowdbot.core.robots.inertia import check_inertia, rolling
 from crowdbot.core.robots.joint import child_of, parent_of
 from crowdbot.core.robots.mesh_pieces import MeshShape
 from crowdbot.core.robots.mesh_shapes import MeshNotes, simplify_mesh
-from crowdbot.core.robots.sdf_to_urdf import from_sdf
+from crowdbot.core.robots.sdf_to_urdf import UNLIMITED, from_sdf
 from crowdbot.core.robots.xml import name_of
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError, PluginError, did_you_mean, nearest
@@ -265,11 +265,12 @@ class _Work:
         note = drives.point_left(self.robot, self.base, joint)
         self.notes += [note] if note else []
         joint.set("type", "continuous")
+        was = "" if limit is None else limit.get("effort", f"{effort:g}")
         if limit is None:
             limit = Xml.SubElement(joint, "limit", velocity="1e9")
+        if was in ("", f"{UNLIMITED:g}"):
             self.notes.append(f"wheel without a limit gets a torque of {effort:g} N m: {name}")
-        elif limit.get("effort") not in (None, f"{effort:g}"):
-            was = limit.get("effort")
+        elif was != f"{effort:g}":
             self.notes.append(f"torque is {effort:g} N m, not {was} N m: {name}")
         for end in ("lower", "upper"):
             limit.attrib.pop(end, None)

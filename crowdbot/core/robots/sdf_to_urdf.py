@@ -11,7 +11,7 @@ from crowdbot.core.robots.xml import numbers as numbers_in
 from crowdbot.errors import InputError
 
 #: URDF requires limits that SDFormat may omit, which means unlimited there.
-_UNLIMITED = 1e9
+UNLIMITED = 1e9
 _SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
 
 
@@ -28,7 +28,7 @@ def from_sdf(described: Description, rates: Mapping[str, float]) -> Xml.Element:
     for name, link in described.links.items():
         _link(Xml.SubElement(document, "link", name=name), link)
     for joint in described.model.findall("joint"):
-        _joint(document, joint, described, rates.get(name_of(joint), _UNLIMITED))
+        _joint(document, joint, described, rates.get(name_of(joint), UNLIMITED))
     return document
 
 
@@ -105,7 +105,7 @@ def _joint(
         if limits.get(limit, "").startswith("-"):
             del limits[limit]
     if limits:
-        whole = {"effort": f"{_UNLIMITED:g}", "velocity": f"{fastest:.12g}", **limits}
+        whole = {"effort": f"{UNLIMITED:g}", "velocity": f"{fastest:.12g}", **limits}
         Xml.SubElement(joint, "limit", whole)
 
 

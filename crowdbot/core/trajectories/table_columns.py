@@ -21,7 +21,7 @@ from crowdbot.errors import InputError, did_you_mean, kind_of, nearest
 #: Names of a column with numbers of frames, in lower case.
 FRAMES = ("frame", "fr", "frames", "frame_id", "frameid", "frame_number")
 #: Our name -> other names that are usual, in lower case; taken if ours is not there.
-_USUAL: Mapping[str, Sequence[str]] = {
+USUAL_NAMES: Mapping[str, Sequence[str]] = {
     "t": ("time", "timestamp", "time_stamp", "stamp", "simsec", "simtime", *FRAMES),
     "x": ("coordcentx", "startx", "pos_x", "position_x", "px", "tx", "xcenter"),
     "y": ("coordcenty", "starty", "pos_y", "position_y", "py", "ty", "ycenter"),
@@ -141,7 +141,7 @@ def chosen(
             found[ours] = header.index(given) if given in header else spelled.index(given)
             continue
         taken = [names.get(other) for other in known]
-        for theirs in (ours, *_USUAL.get(ours, ())):
+        for theirs in (ours, *USUAL_NAMES.get(ours, ())):
             where = header if theirs in header else lower
             if theirs in where and header[where.index(theirs)] not in taken:
                 found[ours] = where.index(theirs)

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
+
 from crowdbot.core.support.text_files import LARGEST_TABLE, input_text
 from crowdbot.core.trajectories.message_columns import joined
 from crowdbot.core.trajectories.raw_table import Cells, ColumnNames, RawTable, as_number
@@ -75,7 +77,7 @@ def read_table(path: Path, names: ColumnNames, known: Iterable[str]) -> RawTable
     if not table.rows:
         raise InputError(f"{path}: the table has no rows")
     if not table.header:
-        raise InputError(f"{path}:{table.lines[0]}: {_nameless(len(table.rows[0]), known)}")
+        raise InputError(f"{path}:{table.lines[0]}: {_nameless(table.rows[0], known)}")
     header = without_units(table.header)
     cells = {name: [row[i] for row in table.rows] for i, name in enumerate(header)}
     made = chosen(str(path), header, names, known, spelled=table.header)
@@ -137,9 +139,9 @@ def split(path: Path, text: str) -> TextTable:
     return TextTable(header, rows, numbers, rate, length_unit(comment) or 1.0, assumed)
 
 
-def _nameless(width: int, known: Sequence[str]) -> str:
-    """Return what is wrong with rows of some width, whose columns nothing names."""
-    if width == _KITTI:
+def _nameless(row: Sequence[str], known: Sequence[str]) -> str:
+    """Return what is wrong with a row whose columns nothing names."""
+    if len(row) == _KITTI and _is_pose(row):
         return (
             "12 numbers a row are poses of KITTI, matrices (3, 4) without times, of a camera that "
             "looks along z: write a table t,x,y of its times, column 12 and minus column 4"
@@ -148,6 +150,14 @@ def _nameless(width: int, known: Sequence[str]) -> str:
         "the table has no header row that names its columns: write one above it, such as "
         f"'{','.join(known[:4])}'"
     )
+
+
+def _is_pose(row: Sequence[str]) -> bool:
+    """Return True for 12 numbers of a matrix (3, 4) that begins with a rotation."""
+    if not all(_is_number(cell) for cell in row):
+        return False
+    turn = np.array([as_number(cell) for cell in row], float).reshape(3, 4)[:, :3]
+    return bool(np.allclose(turn @ turn.T, np.eye(3), atol=1e-3))
 
 
 def _in_groups(header: list[str], rows: Sequence[Sequence[str]]) -> list[str]:

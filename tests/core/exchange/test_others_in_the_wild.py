@@ -37,6 +37,44 @@ def test_jupedsim_scenarios_in_a_message_have_their_geometry_beside_them(tmp_pat
     assert "no exit or checkpoint 'nowhere'" in notes(found, "left out").values()
 
 
+def test_hunav_files_for_isaac_sim_name_behaviours_and_share_goals(tmp_path: Path) -> None:
+    agent = (
+        "    {name}:\n      id: {id}\n      group_id: -1\n      behavior: {{type: {kind}}}\n"
+        "      init_pose: {{x: {id}.0, y: 1.0, z: 0.0, h: 0.5}}\n      goals: [2, 1]\n"
+    )
+    head = (
+        "hunav_loader:\n  ros__parameters:\n    simulator: Isaac Sim\n    map: warehouse\n"
+        "    global_goals:\n      1: {x: -5.0, y: 9.0}\n      2: {x: 1.0, y: 7.0}\n"
+        "    agents: [ann, ben]\n"
+    )
+    file = tmp_path / "warehouse.yaml"
+    ben = agent.format(name="ben", id=2, kind="Regular")
+    file.write_text(head + agent.format(name="ann", id=1, kind="Impassive") + ben)
+    first, second = document_of(imported(file))["scenario"]["crowd"]["agents"]
+    assert [row["attention"] for row in (first, second)] == [0.0, 0.5]
+    assert first["goals"] == [[1.0, 7.0], [-5.0, 9.0]]
+    file.write_text(head + agent.format(name="ann", id=1, kind="Curius") + ben)
+    with pytest.raises(SpecError, match=r"'Curius' is not a behaviour.* did you mean 'curious'"):
+        imported(file)
+
+
+def test_recorded_people_have_usual_names_of_columns_units_and_names(tmp_path: Path) -> None:
+    file = tmp_path / "people.csv"
+    rows = [(t, who, t + k, 2 * k) for t in (0, 1, 2) for k, who in enumerate(("ann", "ben"))]
+    lines = [f"{1000 * t};{who};{100 * x};{100 * y};1.5" for t, who, x, y in rows]
+    file.write_text("\n".join(["timestamp_ms;person_id;pos_x [cm];pos_y [cm];theta_rad", *lines]))
+    (table,) = imported(file).scenes[0].tables.values()
+    found = [tuple(map(float, line.split(","))) for line in table.splitlines()[1:]]
+    assert found == [(t, ("ann", "ben").index(who), x, y) for t, who, x, y in rows]
+    blanks = [f"{who} {t} {x} {y}" for t, who, x, y in rows]
+    file.write_text("\n".join(["pedestrianId simTime startX-PID1 startY-PID1", *blanks]))
+    (same,) = imported(file).scenes[0].tables.values()
+    assert same == table
+    file.write_text("0,7,1,2\n1,7,1.5,2\n")  # a frame, a person and a place, as in other files
+    with pytest.raises(SpecError, match=r"E403.*no known format"):
+        imported(file)
+
+
 @pytest.mark.parametrize(
     ("distribution", "arrivals"),
     [

@@ -101,8 +101,10 @@ def test_each_link_with_a_default_is_told() -> None:
 def test_a_robot_without_any_inertial_drives() -> None:
     text = _cart(dict.fromkeys(("base_link", "left_wheel", "right_wheel"), ""))
     assert check_model(_model(read_description(text))).mass == 3.0
-    found = read_published(text, wheels=WHEELS, shell=SHELL)
+    turns = text.replace("<effort>5</effort>", "<lower>-1e16</lower><upper>1e16</upper>")
+    found = read_published(turns, wheels=WHEELS, shell=SHELL)
     assert found.mass == pytest.approx(3.0)
     assert any("3 links without <inertial> get 1 kg" in note for note in found.notes)
+    assert "wheel without a limit gets a torque of 5 N m: left" in found.notes
     model = check_model(_model(found))
     assert drive(model, "differential_drive", Command(0.2, 0.0), 1.0)[-1].x > 0.05

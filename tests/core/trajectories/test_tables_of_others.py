@@ -427,6 +427,9 @@ def test_matrices_of_kitti_are_refused_with_the_columns_to_take(tmp_path: Path) 
     (tmp_path / "00.txt").write_text("1 0 0 0.1 0 1 0 0.2 0 0 1 0.3\n")
     with pytest.raises(InputError, match=r"00\.txt:1: .* KITTI.* column 12 and minus column 4"):
         READ.from_csv(tmp_path / "00.txt", **BODY)
+    (tmp_path / "heads.csv").write_text("0,1,1,1,100,200,110,210,95,200,115,260\n")
+    with pytest.raises(InputError, match=r"heads\.csv:1: the table has no header row"):
+        READ.from_csv(agents=tmp_path / "heads.csv")
 
 
 def test_frames_of_a_video_taken_for_annotations_are_told(tmp_path: Path) -> None:

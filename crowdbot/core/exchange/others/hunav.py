@@ -11,6 +11,7 @@ from crowdbot.core.exchange.others.usual import social_forces
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import Row, RowTable, not_negative, positive
 from crowdbot.core.exchange.scene import Data, Draft, id_of
+from crowdbot.errors import nearest
 
 #: Behaviours by number: name, and our like of it.
 _BEHAVIOURS = {
@@ -24,8 +25,18 @@ _BEHAVIOURS = {
 
 
 def _behaviour(item: Item) -> int:
+    """Return the number of a behaviour; files for Isaac Sim have its name."""
     kind = item.find("type") or item
-    return kind.whole(1, 6)
+    text = kind.text().strip().lower().removeprefix("beh_")
+    if text.lstrip("+-")[:1].isdigit():
+        return kind.whole(1, 6)
+    numbers = {name: number for number, (name, _) in _BEHAVIOURS.items()}
+    if text not in numbers:
+        message = (
+            f"'{kind.text()[:60]}' is not a behaviour; they are {', '.join(numbers)}, or 1 to 6"
+        )
+        kind.refuse(message, nearest(text, numbers))
+    return numbers[text]
 
 
 AGENT = RowTable(
