@@ -145,6 +145,7 @@ from crowdbot.dsl.spec.component_specs import PlannerSpec as PlannerSpec
 from crowdbot.dsl.spec.component_specs import RewardSpec as RewardSpec
 from crowdbot.dsl.spec.component_specs import RobotSpec as RobotSpec
 from crowdbot.dsl.spec.component_specs import SensorSpec as SensorSpec
+from crowdbot.dsl.spec.default import default as default
 from crowdbot.dsl.spec.metric_component import Better as Better
 from crowdbot.dsl.spec.metric_component import MetricComponent as MetricComponent
 from crowdbot.dsl.spec.metric_component import MetricVariant as MetricVariant

@@ -18,6 +18,7 @@ from crowdbot.core.scenarios.library import open_spec, select
 from crowdbot.dsl.checks.pydantic_errors import mark_of
 from crowdbot.dsl.checks.read_model import read_model
 from crowdbot.dsl.spec.component_specs import PlannerDocument
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.spec import Spec
 from crowdbot.dsl.text.diagnostics import Diagnostic
 from crowdbot.dsl.text.nodes import Node
@@ -45,10 +46,8 @@ class StudyCondition(Spec):
     planner: PlannerDocument = Field(
         description="Planner that gets the user's commands: a document, a kind, or a file."
     )
-    title: str = Field(default="", description="Name for reports; unset: its label.")
-    shown: str = Field(
-        default="", description="Name for participants; unset: A, B, … in the order of theirs."
-    )
+    title: str = default("", "Name for reports; unset: its label.")
+    shown: str = default("", "Name for participants; unset: A, B, … in the order of theirs.")
 
 
 class StudySpec(Spec):
@@ -56,8 +55,8 @@ class StudySpec(Spec):
 
     id: _Label = Field(description="Name of the study.")
     title: str = Field(description="Heading of its pages.")
-    seed: Annotated[int, Ge(0), Le(2**31)] = Field(
-        default=0, description="Seed of the runs, and of orders that are drawn."
+    seed: Annotated[int, Ge(0), Le(2**31)] = default(
+        0, "Seed of the runs, and of orders that are drawn."
     )
     participants: (
         Annotated[int, Ge(1), Le(_MOST)] | Annotated[tuple[ParticipantId, ...], Field(strict=False)]
@@ -68,33 +67,32 @@ class StudySpec(Spec):
     trials: Annotated[tuple[StudyTrial, ...], MinLen(1)] = Field(
         strict=False, description="Driven in each condition."
     )
-    practice: StudyTrial | None = Field(
-        default=None, description="Driven first in each condition, without being scored."
+    practice: StudyTrial | None = default(
+        None, "Driven first in each condition, without being scored."
     )
-    order: Literal["williams", "latin", "fixed"] = Field(
-        default="williams", description="Order of conditions: balanced for what came before "
-        "(Williams), a Latin square, or as written.",
-    )  # fmt: skip
-    trial_order: Literal["fixed", "drawn"] = Field(
-        default="fixed", description="Order of trials within a condition: as written, or drawn."
+    order: Literal["williams", "latin", "fixed"] = default(
+        "williams",
+        "Order of conditions: balanced for what came before (Williams), a Latin square, or as "
+        "written.",
+    )
+    trial_order: Literal["fixed", "drawn"] = default(
+        "fixed", "Order of trials within a condition: as written, or drawn."
     )
     consent: _Text = Field(description="Text that participants agree to; blank lines part it.")
-    welcome: _Text = Field(default="", description="Text before the first drive.")
-    thanks: _Text = Field(default="", description="Text at the end.")
-    forms: tuple[FormName, ...] = Field(
-        default=("nasa_tlx", "use"), strict=False, description="Asked after each condition."
+    welcome: _Text = default("", "Text before the first drive.")
+    thanks: _Text = default("", "Text at the end.")
+    forms: tuple[FormName, ...] = default(
+        ("nasa_tlx", "use"), "Asked after each condition.", strict=False
     )
-    tlx_weights: Literal["each", "once", "none"] = Field(
-        default="once", description="When the 15 comparisons of NASA-TLX are asked."
+    tlx_weights: Literal["each", "once", "none"] = default(
+        "once", "When the 15 comparisons of NASA-TLX are asked."
     )
-    use_wording: str = Field(
-        default="", description="File with the 30 items of USE, one a line; unset: paraphrased."
+    use_wording: str = default("", "File with the 30 items of USE, one a line; unset: paraphrased.")
+    synthetic: tuple[dict[str, Any], ...] = default(
+        (),
+        "Joysticks of synthetic participants, one after the other; unset: the scenarios' own.",
+        strict=False,
     )
-    synthetic: tuple[dict[str, Any], ...] = Field(
-        default=(), strict=False,
-        description="Joysticks of synthetic participants, one after the other; unset: the "
-        "scenarios' own.",
-    )  # fmt: skip
 
     @field_validator("participants")
     @classmethod

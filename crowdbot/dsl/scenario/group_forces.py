@@ -6,8 +6,8 @@ import math
 from typing import Annotated
 
 from annotated_types import Ge, Gt, Le
-from pydantic import Field
 
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.quantities import PositiveAcceleration, PositiveLength, Quantity
 from crowdbot.dsl.spec.spec import Spec
 
@@ -20,23 +20,15 @@ class GroupForces(Spec):
     Source of strengths, angle and distance: Moussaïd et al., PLoS ONE 5(4), 2010, e10047.
     """
 
-    gaze: Strength = Field(
-        default=4.0,
-        description="β1, 1/s: slows down people who would have to turn the head to see the others.",
+    gaze: Strength = default(
+        4.0, "β1, 1/s: slows down people who would have to turn the head to see the others."
     )
-    cohesion: Strength = Field(
-        default=3.0, description="β2, m/s^2: towards the middle of the group."
+    cohesion: Strength = default(3.0, "β2, m/s^2: towards the middle of the group.")
+    repulsion: Strength = default(1.0, "β3, m/s^2: away from members that are too near.")
+    field_of_view: Annotated[float, Gt(0), Le(math.tau), Quantity("angle")] = default(
+        math.pi, "Full angle in which the middle of the group is seen without turning, rad."
     )
-    repulsion: Strength = Field(
-        default=1.0, description="β3, m/s^2: away from members that are too near."
-    )
-    field_of_view: Annotated[float, Gt(0), Le(math.tau), Quantity("angle")] = Field(
-        default=math.pi,
-        description="Full angle in which the middle of the group is seen without turning, rad.",
-    )
-    distance: PositiveLength = Field(
-        default=0.8, description="Members whose centres are nearer repel each other, m."
-    )
-    limit: PositiveAcceleration = Field(
-        default=3.0, description="Largest acceleration by all three together, m/s^2; ours."
+    distance: PositiveLength = default(0.8, "Members whose centres are nearer repel each other, m.")
+    limit: PositiveAcceleration = default(
+        3.0, "Largest acceleration by all three together, m/s^2; ours."
     )

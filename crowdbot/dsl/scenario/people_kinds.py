@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from annotated_types import Gt
 from pydantic import Discriminator, Field, Tag
 
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.parameters import LengthSample, MassSample, SpeedChoice
 from crowdbot.dsl.spec.quantities import NonNegativeLength, PositiveLength, PositiveMass, Quantity
 from crowdbot.dsl.spec.spec import Spec
@@ -55,21 +56,16 @@ MassChoice = Annotated[
 class PeopleKind(Spec):
     """One kind of people in a mixture; missing fields have the defaults of its look."""
 
-    look: AppearanceName = Field(
-        default="adult", description="What sensors see, and usual numbers."
+    look: AppearanceName = default("adult", "What sensors see, and usual numbers.")
+    share: Annotated[float, Gt(0)] = default(1.0, "Share of the people, on any scale.")
+    radius: LengthChoice | None = default(None, "Radius of the disc, m.")
+    height: LengthChoice | None = default(None, "Height, m.")
+    leg_length: LengthChoice | None = default(
+        None, "From the floor to the hip, m; without it 0.53 of the height."
     )
-    share: Annotated[float, Gt(0)] = Field(
-        default=1.0, description="Share of the people, on any scale."
-    )
-    radius: LengthChoice | None = Field(default=None, description="Radius of the disc, m.")
-    height: LengthChoice | None = Field(default=None, description="Height, m.")
-    leg_length: LengthChoice | None = Field(
-        default=None, description="From the floor to the hip, m; without it 0.53 of the height."
-    )
-    mass: MassChoice | None = Field(default=None, description="Mass in the physics, kg.")
-    speed: SpeedChoice | None = Field(
-        default=None,
-        description="Preferred speed, m/s; without it what others draw times the look's pace.",
+    mass: MassChoice | None = default(None, "Mass in the physics, kg.")
+    speed: SpeedChoice | None = default(
+        None, "Preferred speed, m/s; without it what others draw times the look's pace."
     )
 
 

@@ -13,6 +13,7 @@ from typing import Annotated, ClassVar, Literal
 from annotated_types import Ge, Gt, Le
 from pydantic import Field, model_validator
 
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.quantities import (
     NonNegativeLength,
     PositiveDuration,
@@ -28,21 +29,19 @@ _AngleError = Annotated[float, Ge(0), Le(math.pi), Quantity("angle")]
 class WhichPerson(Spec):
     """A person or a group of the crowd: a number, a name, or one drawn by the crowd's seed."""
 
-    agent: Annotated[int, Ge(0), Le(2**31 - 1)] | None = Field(
-        default=None, description="Number of an explicit agent."
+    agent: Annotated[int, Ge(0), Le(2**31 - 1)] | None = default(
+        None, "Number of an explicit agent."
     )
-    group: Annotated[int, Ge(0), Le(2**31 - 1)] | None = Field(
-        default=None, description="Number of a group of explicit agents: all of them together."
+    group: Annotated[int, Ge(0), Le(2**31 - 1)] | None = default(
+        None, "Number of a group of explicit agents: all of them together."
     )
-    spawn: str | None = Field(
-        default=None, description="Name of a spawn, of whose people the crowd's seed draws one."
+    spawn: str | None = default(
+        None, "Name of a spawn, of whose people the crowd's seed draws one."
     )
-    stream: str | None = Field(
-        default=None, description="Name of a stream, of whose people the crowd's seed draws one."
+    stream: str | None = default(
+        None, "Name of a stream, of whose people the crowd's seed draws one."
     )
-    whole_group: bool = Field(
-        default=False, description="With spawn or stream: the group of the drawn person."
-    )
+    whole_group: bool = default(False, "With spawn or stream: the group of the drawn person.")
 
     @property
     def written(self) -> tuple[str, ...]:
@@ -81,18 +80,17 @@ class PersonGoal(TaskGoal):
     #: True if the time in place counts only without interruption.
     in_a_row: ClassVar[bool] = False
     person: WhichPerson = Field(description="Which person or group.")
-    knows: Literal["tracked", "told"] = Field(
-        default="tracked",
-        description="How the robot knows where the person is. tracked: one pose at the start, as "
+    knows: Literal["tracked", "told"] = default(
+        "tracked",
+        "How the robot knows where the person is. tracked: one pose at the start, as "
         "one who points at a person gives it, then its own lidars; told: the pose four times a "
         "second, as from a device that the person wears.",
     )
-    position_error: NonNegativeLength = Field(
-        default=0.15, description="Standard deviation of a pose that the robot gets, each axis, m."
+    position_error: NonNegativeLength = default(
+        0.15, "Standard deviation of a pose that the robot gets, each axis, m."
     )
-    heading_error: _AngleError = Field(
-        default=math.radians(10.0),
-        description="Standard deviation of the facing direction that the robot gets, rad.",
+    heading_error: _AngleError = default(
+        math.radians(10.0), "Standard deviation of the facing direction that the robot gets, rad."
     )
     distance: PositiveLength = Field(description="Wanted gap between robot and person, m.")
     tolerance: PositiveLength = Field(
@@ -117,45 +115,33 @@ class ApproachGoal(PersonGoal):
 
     in_a_row: ClassVar[bool] = True
     kind: Literal["approach"] = "approach"
-    distance: PositiveLength = Field(default=1.5, description="Wanted gap, m.")
-    tolerance: PositiveLength = Field(default=0.4, description="Allowed difference of the gap, m.")
-    angle: _Sector = Field(
-        default=math.radians(45.0), description="Allowed angle off the person's front, rad."
-    )
-    hold: PositiveDuration = Field(
-        default=2.0, description="The task is done after this time in place, in a row, s."
-    )
+    distance: PositiveLength = default(1.5, "Wanted gap, m.")
+    tolerance: PositiveLength = default(0.4, "Allowed difference of the gap, m.")
+    angle: _Sector = default(math.radians(45.0), "Allowed angle off the person's front, rad.")
+    hold: PositiveDuration = default(2.0, "The task is done after this time in place, in a row, s.")
 
 
 class FollowGoal(PersonGoal):
     """Stay behind a person."""
 
     kind: Literal["follow"] = "follow"
-    distance: PositiveLength = Field(default=1.2, description="Wanted gap, m.")
-    tolerance: PositiveLength = Field(default=0.6, description="Allowed difference of the gap, m.")
-    angle: _Sector = Field(
-        default=math.radians(60.0), description="Allowed angle off the person's back, rad."
-    )
-    hold: PositiveDuration = Field(
-        default=20.0, description="The task is done after this time in place, in all, s."
-    )
+    distance: PositiveLength = default(1.2, "Wanted gap, m.")
+    tolerance: PositiveLength = default(0.6, "Allowed difference of the gap, m.")
+    angle: _Sector = default(math.radians(60.0), "Allowed angle off the person's back, rad.")
+    hold: PositiveDuration = default(20.0, "The task is done after this time in place, in all, s.")
 
 
 class AccompanyGoal(PersonGoal):
     """Go beside a person."""
 
     kind: Literal["accompany"] = "accompany"
-    side: Literal["left", "right", "either"] = Field(
-        default="either", description="Side of the person, as the person sees it."
+    side: Literal["left", "right", "either"] = default(
+        "either", "Side of the person, as the person sees it."
     )
-    distance: PositiveLength = Field(default=0.75, description="Wanted gap, m.")
-    tolerance: PositiveLength = Field(default=0.5, description="Allowed difference of the gap, m.")
-    angle: _Sector = Field(
-        default=math.radians(50.0), description="Allowed angle off the person's side, rad."
-    )
-    hold: PositiveDuration = Field(
-        default=20.0, description="The task is done after this time in place, in all, s."
-    )
+    distance: PositiveLength = default(0.75, "Wanted gap, m.")
+    tolerance: PositiveLength = default(0.5, "Allowed difference of the gap, m.")
+    angle: _Sector = default(math.radians(50.0), "Allowed angle off the person's side, rad.")
+    hold: PositiveDuration = default(20.0, "The task is done after this time in place, in all, s.")
 
 
 class LeadGoal(PersonGoal):
@@ -167,17 +153,11 @@ class LeadGoal(PersonGoal):
 
     kind: Literal["lead"] = "lead"
     zone: str = Field(description="Name of the zone to lead the person to.")
-    distance: PositiveLength = Field(default=1.2, description="Wanted gap, m.")
-    tolerance: PositiveLength = Field(default=0.75, description="Allowed difference of the gap, m.")
-    angle: _Sector = Field(
-        default=math.radians(60.0), description="Allowed angle off the person's front, rad."
-    )
-    keeps: PositiveLength = Field(
-        default=1.0, description="Gap to the robot at which the person stops, m."
-    )
-    loses: PositiveLength = Field(
-        default=4.0, description="Gap beyond which the person waits for the robot, m."
-    )
+    distance: PositiveLength = default(1.2, "Wanted gap, m.")
+    tolerance: PositiveLength = default(0.75, "Allowed difference of the gap, m.")
+    angle: _Sector = default(math.radians(60.0), "Allowed angle off the person's front, rad.")
+    keeps: PositiveLength = default(1.0, "Gap to the robot at which the person stops, m.")
+    loses: PositiveLength = default(4.0, "Gap beyond which the person waits for the robot, m.")
 
     @model_validator(mode="after")
     def _in_order(self) -> LeadGoal:

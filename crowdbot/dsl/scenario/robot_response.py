@@ -11,6 +11,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from annotated_types import Ge, Gt, Le, Lt
 from pydantic import BeforeValidator, Field, model_validator
 
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.quantities import (
     NonNegativeDuration,
     NonNegativeLength,
@@ -37,85 +38,67 @@ class RobotResponse(Spec):
     #: The default kind of response.
     usual: ClassVar[str] = "human"
     kind: str = Field(description="Name of the response.")
-    reaction: Literal["yield", "ignore", "mixed", "distracted"] = Field(
-        default="yield",
-        description="Who notices the robot: all, none, or some; with `distracted`, "
+    reaction: Literal["yield", "ignore", "mixed", "distracted"] = default(
+        "yield",
+        "Who notices the robot: all, none, or some; with `distracted`, "
         "some while it moves and all when it stands.",
     )
-    ignoring_fraction: Annotated[float, Gt(0), Lt(1)] | None = Field(
-        default=None,
-        description="With `mixed` or `distracted`: the fraction of people who ignore the robot, "
+    ignoring_fraction: Annotated[float, Gt(0), Lt(1)] | None = default(
+        None,
+        "With `mixed` or `distracted`: the fraction of people who ignore the robot, "
         "the least attentive ones.",
     )
-    margin: NonNegativeLength = Field(
-        default=0.25,
-        description="Perceived radius minus real radius of the robot, m, of the disc that crowd "
+    margin: NonNegativeLength = default(
+        0.25,
+        "Perceived radius minus real radius of the robot, m, of the disc that crowd "
         "policies are shown.",
     )
-    velocity: Literal["visible", "hidden"] = Field(
-        default="visible", description="Whether people see how the robot moves."
+    velocity: Literal["visible", "hidden"] = default(
+        "visible", "Whether people see how the robot moves."
     )
 
-    late_fraction: Annotated[float, Ge(0), Le(1)] = Field(
-        default=0.4,
-        description="Fraction who notice late, of those who do not ignore the robot; the least "
-        "attentive ones.",
+    late_fraction: Annotated[float, Ge(0), Le(1)] = default(
+        0.4,
+        "Fraction who notice late, of those who do not ignore the robot; the least attentive ones.",
     )
-    late_time: NonNegativeDuration = Field(
-        default=0.7, description="Time to contact at which late people notice the robot, s."
+    late_time: NonNegativeDuration = default(
+        0.7, "Time to contact at which late people notice the robot, s."
     )
-    late_time_standing: NonNegativeDuration = Field(
-        default=2.5, description="The same where the robot stands, s."
+    late_time_standing: NonNegativeDuration = default(2.5, "The same where the robot stands, s.")
+    late_gap: NonNegativeLength = default(
+        0.3, "Surface gap at which late people notice it in any case, m."
     )
-    late_gap: NonNegativeLength = Field(
-        default=0.3, description="Surface gap at which late people notice it in any case, m."
-    )
-    sight: PositiveLength = Field(
-        default=6.0,
-        description="Surface gap within which attentive people notice the robot, and beyond "
+    sight: PositiveLength = default(
+        6.0,
+        "Surface gap within which attentive people notice the robot, and beyond "
         "which everyone forgets it, m.",
     )
-    field_of_view: Annotated[float, Gt(0), Le(math.tau), Quantity("angle")] = Field(
-        default=math.radians(200.0),
-        description="Full angle about the way faced in which people notice the robot, rad.",
+    field_of_view: Annotated[float, Gt(0), Le(math.tau), Quantity("angle")] = default(
+        math.radians(200.0), "Full angle about the way faced in which people notice the robot, rad."
     )
-    reaction_time: NonNegativeDuration = Field(
-        default=0.3, description="From noticing to doing something, s."
+    reaction_time: NonNegativeDuration = default(0.3, "From noticing to doing something, s.")
+    horizon: PositiveDuration = default(3.0, "How far ahead in time people look, s.")
+    clearance: NonNegativeLength = default(0.25, "Surface gap that people want when they pass, m.")
+    lateral_acceleration: PositiveAcceleration = default(
+        2.0, "Largest acceleration sideways, m/s^2."
     )
-    horizon: PositiveDuration = Field(
-        default=3.0, description="How far ahead in time people look, s."
+    braking: PositiveAcceleration = default(3.0, "Largest deceleration of a person, m/s^2.")
+    total_acceleration: PositiveAcceleration = default(
+        3.0, "Largest acceleration by policy and evasion together, m/s^2."
     )
-    clearance: NonNegativeLength = Field(
-        default=0.25, description="Surface gap that people want when they pass, m."
+    stop_gap: NonNegativeLength = default(
+        0.25, "Surface gap at which those who brake come to rest, m."
     )
-    lateral_acceleration: PositiveAcceleration = Field(
-        default=2.0, description="Largest acceleration sideways, m/s^2."
+    standing_speed: NonNegativeSpeed = default(0.05, "A robot at most this fast stands, m/s.")
+    moving_speed: PositiveSpeed = default(0.3, "A robot at least this fast moves, m/s.")
+    standing_gap: NonNegativeLength = default(
+        0.2, "Surface gap that people keep to a robot that stands, m."
     )
-    braking: PositiveAcceleration = Field(
-        default=3.0, description="Largest deceleration of a person, m/s^2."
+    standing_stiffness: NonNegativeSteeringStiffness = default(
+        100.0, "How firmly people who are pushed keep that gap, 1/s^2."
     )
-    total_acceleration: PositiveAcceleration = Field(
-        default=3.0,
-        description="Largest acceleration by policy and evasion together, m/s^2.",
-    )
-    stop_gap: NonNegativeLength = Field(
-        default=0.25, description="Surface gap at which those who brake come to rest, m."
-    )
-    standing_speed: NonNegativeSpeed = Field(
-        default=0.05, description="A robot at most this fast stands, m/s."
-    )
-    moving_speed: PositiveSpeed = Field(
-        default=0.3, description="A robot at least this fast moves, m/s."
-    )
-    standing_gap: NonNegativeLength = Field(
-        default=0.2, description="Surface gap that people keep to a robot that stands, m."
-    )
-    standing_stiffness: NonNegativeSteeringStiffness = Field(
-        default=100.0, description="How firmly people who are pushed keep that gap, 1/s^2."
-    )
-    shown_to_policies: bool = Field(
-        default=False,
-        description="Whether the crowd policies of attentive people are shown the robot, too.",
+    shown_to_policies: bool = default(
+        False, "Whether the crowd policies of attentive people are shown the robot, too."
     )
 
     @model_validator(mode="after")
@@ -152,7 +135,7 @@ class RobotResponse(Spec):
 class HumanResponse(RobotResponse):
     """People notice a robot, react after a delay, and evade it as fast as people can."""
 
-    kind: Literal["human"] = Field(default="human", description="Name of the response.")
+    kind: Literal["human"] = default("human", "Name of the response.")
 
 
 class GivingWay(RobotResponse):
@@ -162,54 +145,48 @@ class GivingWay(RobotResponse):
     docs/explanation/people_near_robots.md.
     """
 
-    kind: Literal["giving_way"] = Field(default="giving_way", description="Name of the response.")
-    late_fraction: Annotated[float, Ge(0), Le(1)] = Field(
-        default=0.01,
-        description="Fraction who notice late, of those who do not ignore the robot; the least "
+    kind: Literal["giving_way"] = default("giving_way", "Name of the response.")
+    late_fraction: Annotated[float, Ge(0), Le(1)] = default(
+        0.01,
+        "Fraction who notice late, of those who do not ignore the robot; the least "
         "attentive ones. Recorded: 0 to 1 % (NavWareSet, VCI-CITR, VCI-DUT).",
     )
-    sight_time: NonNegativeDuration = Field(
-        default=5.0,
-        description="Time to contact within which attentive people notice a robot beyond `sight`, "
+    sight_time: NonNegativeDuration = default(
+        5.0,
+        "Time to contact within which attentive people notice a robot beyond `sight`, "
         "s. Recorded onsets: 2.4 to 4 s, at 5 to 16 m (VCI-CITR, VCI-DUT).",
     )
-    hears: bool = Field(
-        default=True,
-        description="Whether people hear robots faster than `clearance_speed` that come from "
+    hears: bool = default(
+        True,
+        "Whether people hear robots faster than `clearance_speed` that come from "
         "behind, as those in VCI-CITR did.",
     )
-    hearing_time: PositiveDuration = Field(
-        default=4.0, description="Time to contact within which they hear them, s."
-    )
-    horizon: PositiveDuration = Field(
-        default=4.0, description="How far ahead in time people look, s."
-    )
-    clearance: NonNegativeLength = Field(
-        default=0.17,
-        description="Surface gap that people want when they pass a slow robot, m; the mean over "
+    hearing_time: PositiveDuration = default(4.0, "Time to contact within which they hear them, s.")
+    horizon: PositiveDuration = default(4.0, "How far ahead in time people look, s.")
+    clearance: NonNegativeLength = default(
+        0.17,
+        "Surface gap that people want when they pass a slow robot, m; the mean over "
         "people. Recorded: median 0.17 m at 0.8 to 1.2 m/s (NavWareSet).",
     )
-    clearance_range: NonNegativeLength = Field(
-        default=0.25,
-        description="How much more the most attentive person wants, and how much less the least "
+    clearance_range: NonNegativeLength = default(
+        0.25,
+        "How much more the most attentive person wants, and how much less the least "
         "attentive, m; never less than 0.02 m in all.",
     )
-    clearance_growth: NonNegativeDuration = Field(
-        default=0.5,
-        description="Growth of the clearance with the robot's speed above `clearance_speed`, s. "
+    clearance_growth: NonNegativeDuration = default(
+        0.5,
+        "Growth of the clearance with the robot's speed above `clearance_speed`, s. "
         "Recorded: 0.27 to 0.41 s on average up to 6 m/s, steeper below 3 m/s.",
     )
-    clearance_speed: NonNegativeSpeed = Field(
-        default=1.0, description="A faster robot is a vehicle to people, m/s."
-    )
-    most_clearance: NonNegativeLength = Field(
-        default=1.2,
-        description="Largest clearance by that growth, m. Recorded: medians of 1.17 m at 3 to "
+    clearance_speed: NonNegativeSpeed = default(1.0, "A faster robot is a vehicle to people, m/s.")
+    most_clearance: NonNegativeLength = default(
+        1.2,
+        "Largest clearance by that growth, m. Recorded: medians of 1.17 m at 3 to "
         "4 m/s and 1.4 m above (VCI-CITR).",
     )
-    yield_time: NonNegativeDuration = Field(
-        default=0.6,
-        description="People pass behind a crossing robot if that way is longer by less than the "
+    yield_time: NonNegativeDuration = default(
+        0.6,
+        "People pass behind a crossing robot if that way is longer by less than the "
         "robot drives in this time, s; behind a vehicle they leave more room.",
     )
     waiting_speed: NonNegativeSpeed = Field(
@@ -219,17 +196,16 @@ class GivingWay(RobotResponse):
         "unless they expect to be clear of it in time, m/s. Recorded: 6 % (VCI-DUT) and 12 % "
         "(VCI-CITR) pass before a vehicle that they would meet.",
     )
-    speeding_up: PositiveAcceleration = Field(
-        default=0.6, description="Largest acceleration ahead to pass first, m/s^2."
+    speeding_up: PositiveAcceleration = default(
+        0.6, "Largest acceleration ahead to pass first, m/s^2."
     )
-    intent: NonNegativeDuration = Field(
-        default=0.5,
-        description="People who slowed down expect to walk on: time over which what they want "
+    intent: NonNegativeDuration = default(
+        0.5,
+        "People who slowed down expect to walk on: time over which what they want "
         "counts in what they predict, s.",
     )
-    lateral_acceleration: PositiveAcceleration = Field(
-        default=1.2,
-        description="Largest acceleration sideways, m/s^2. Recorded: 95 % below 0.9 to 1.3.",
+    lateral_acceleration: PositiveAcceleration = default(
+        1.2, "Largest acceleration sideways, m/s^2. Recorded: 95 % below 0.9 to 1.3."
     )
 
 

@@ -10,6 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from annotated_types import Ge
 from pydantic import BeforeValidator, Field
 
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.quantities import NonNegativeLength, PositiveDuration
 from crowdbot.dsl.spec.spec import Spec
 
@@ -26,23 +27,23 @@ class Routing(Spec):
 class StraightRouting(Routing):
     """Straight paths to the goal; obstacles are left to the crowd policy and to contact."""
 
-    kind: Literal["straight"] = Field(default="straight", description="Name of the routing.")
+    kind: Literal["straight"] = default("straight", "Name of the routing.")
 
 
 class MeshRouting(Routing):
     """Shortest paths around walls and pillars, for each person's radius."""
 
-    kind: Literal["mesh"] = Field(default="mesh", description="Name of the routing.")
-    spread: NonNegativeLength = Field(
-        default=0.5,
-        description="Largest distance from a corner at which people pass it, drawn "
+    kind: Literal["mesh"] = default("mesh", "Name of the routing.")
+    spread: NonNegativeLength = default(
+        0.5,
+        "Largest distance from a corner at which people pass it, drawn "
         "for each person, m; never more than the opening has room for.",
     )
-    patience: PositiveDuration = Field(
-        default=5.0, description="After this time without progress people look for another way, s."
+    patience: PositiveDuration = default(
+        5.0, "After this time without progress people look for another way, s."
     )
-    detour: Annotated[float, Ge(1)] = Field(
-        default=1.5, description="Largest length of another path, relative to the shortest."
+    detour: Annotated[float, Ge(1)] = default(
+        1.5, "Largest length of another path, relative to the shortest."
     )
 
 

@@ -47,6 +47,7 @@ from crowdbot.dsl.spec.component_specs import (
     RobotSpec,
     SensorSpec,
 )
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.parameters import SpeedDistribution
 from crowdbot.dsl.spec.quantities import (
     Angle,
@@ -72,8 +73,8 @@ AtGoal = Literal["portal", RouteEnd, "return", "onward"]
 class CrowdSeed(Spec):
     """The seed of the crowd's random numbers; equal seeds sample equal people."""
 
-    root: Annotated[int, Ge(0), Le(2**63 - 1)] = Field(default=0, description="Root seed.")
-    key: str = Field(default="", description="Draw within the root: labels of the seed axes.")
+    root: Annotated[int, Ge(0), Le(2**63 - 1)] = default(0, "Root seed.")
+    key: str = default("", "Draw within the root: labels of the seed axes.")
 
 
 class Flow(Spec):
@@ -83,9 +84,7 @@ class Flow(Spec):
         description="in: from the first portal to the second; counter: the other way; both: every "
         "second person the other way."
     )
-    portals: tuple[str, str] = Field(
-        default=("a", "b"), strict=False, description="Names of the two portals."
-    )
+    portals: tuple[str, str] = default(("a", "b"), "Names of the two portals.", strict=False)
     density: PositiveDensity = Field(description="People per area of the start zone, 1/m^2.")
     area: str = Field(description="Zone in which people start.")
 
@@ -93,25 +92,24 @@ class Flow(Spec):
 class Body(Spec):
     """Properties shared by all agents of the crowd."""
 
-    radius: PositiveLength = Field(default=0.33, description="Radius of the disc, m.")
-    avoided_radius: PositiveLength | None = Field(
-        default=None,
-        exclude_if=unset,
-        description="Radius of the disc that policies and steering parts keep clear of, m; by "
+    radius: PositiveLength = default(0.33, "Radius of the disc, m.")
+    avoided_radius: PositiveLength | None = default(
+        None,
+        "Radius of the disc that policies and steering parts keep clear of, m; by "
         "default `radius`, which is what touches.",
+        exclude_if=unset,
     )
-    mass: PositiveMass = Field(default=75.0, description="Mass in the physics, kg.")
-    max_speed: PositiveSpeed = Field(default=3.0, description="Largest walking speed, m/s.")
-    max_acceleration: PositiveAcceleration = Field(
-        default=5.0,
-        description="Largest acceleration that people choose, m/s^2; pushes may exceed it.",
+    mass: PositiveMass = default(75.0, "Mass in the physics, kg.")
+    max_speed: PositiveSpeed = default(3.0, "Largest walking speed, m/s.")
+    max_acceleration: PositiveAcceleration = default(
+        5.0, "Largest acceleration that people choose, m/s^2; pushes may exceed it."
     )
-    height: PositiveLength = Field(default=1.7, description="Height, m.")
-    figures: dict[str, Asset] = Field(
-        default={},
-        exclude_if=lambda figures: not figures,
-        description="Named meshes (glTF) of people for colour images, which people have in turn. "
+    height: PositiveLength = default(1.7, "Height, m.")
+    figures: dict[str, Asset] = default(
+        {},
+        "Named meshes (glTF) of people for colour images, which people have in turn. "
         "Lidars, depth cameras and contacts do not see them.",
+        exclude_if=lambda figures: not figures,
     )
 
 
@@ -119,8 +117,8 @@ class NamedPolicy(Spec):
     """A policy for some agents, in place of the crowd's own."""
 
     policy: SerializeAsAny[CrowdPolicySpec]
-    costs: dict[str, SerializeAsAny[CostFunctionSpec]] = Field(
-        default={}, description="Named cost functions of a velocity-space policy."
+    costs: dict[str, SerializeAsAny[CostFunctionSpec]] = default(
+        {}, "Named cost functions of a velocity-space policy."
     )
 
 
@@ -131,73 +129,67 @@ class Crowd(Spec):
     """
 
     flow: Flow | None = None
-    streams: dict[str, StreamChoice] = Field(
-        default={}, exclude_if=lambda streams: not streams, description="Named streams of people."
+    streams: dict[str, StreamChoice] = default(
+        {}, "Named streams of people.", exclude_if=lambda streams: not streams
     )
-    spawns: dict[str, Spawn] = Field(default={}, description="Named spawns.")
-    goal_areas: dict[str, GoalArea] = Field(default={}, description="Named areas of goals.")
-    agents: Agents = Field(
-        default=(), strict=False, description="Explicit agents: rows, or `{csv: FILE}`."
+    spawns: dict[str, Spawn] = default({}, "Named spawns.")
+    goal_areas: dict[str, GoalArea] = default({}, "Named areas of goals.")
+    agents: Agents = default((), "Explicit agents: rows, or `{csv: FILE}`.", strict=False)
+    speed: SpeedDistribution | None = default(
+        None, "Preferred speeds of all who have none of their own."
     )
-    speed: SpeedDistribution | None = Field(
-        default=None, description="Preferred speeds of all who have none of their own."
-    )
-    body: Body = Field(default=Body(), description="Common to all agents.")
-    people: dict[str, PeopleKind] = Field(
-        default={},
+    body: Body = default(Body(), "Common to all agents.")
+    people: dict[str, PeopleKind] = default(
+        {},
+        "Named kinds of people that the crowd is a mixture of; without it all are alike.",
         exclude_if=lambda kinds: not kinds,
-        description="Named kinds of people that the crowd is a mixture of; without it all are "
-        "alike.",
     )
-    groups: GroupForces | None = Field(
-        default=GroupForces(),
+    groups: GroupForces | None = default(
+        GroupForces(),
+        "What holds groups together; null: nothing.",
         exclude_if=lambda forces: forces == GroupForces(),
-        description="What holds groups together; null: nothing.",
     )
     policy: SerializeAsAny[CrowdPolicySpec]
-    costs: dict[str, SerializeAsAny[CostFunctionSpec]] = Field(
-        default={}, description="Named cost functions of a velocity-space policy."
+    costs: dict[str, SerializeAsAny[CostFunctionSpec]] = default(
+        {}, "Named cost functions of a velocity-space policy."
     )
-    policies: dict[str, NamedPolicy] = Field(
-        default={}, description="Named policies for spawns and agents that follow another one."
+    policies: dict[str, NamedPolicy] = default(
+        {}, "Named policies for spawns and agents that follow another one."
     )
-    solids: Literal["soft", "firm"] = Field(
-        default="soft",
-        exclude_if=lambda value: value == "soft",
-        description="firm: no body overlaps a wall, a block or a pillar by more than 2 cm, however "
+    solids: Literal["soft", "firm"] = default(
+        "soft",
+        "firm: no body overlaps a wall, a block or a pillar by more than 2 cm, however "
         "hard others push; soft: people are pushed out, and only their centres never come in.",
+        exclude_if=lambda value: value == "soft",
     )
-    contact_dissipation: NonNegativeDamping = Field(
-        default=0.0,
-        exclude_if=lambda value: value == 0.0,
-        description="How much stiffer contact among people and with walls is while it closes, "
+    contact_dissipation: NonNegativeDamping = default(
+        0.0,
+        "How much stiffer contact among people and with walls is while it closes, "
         "s/m: people part at most at its inverse. 0: they bounce off like springs.",
+        exclude_if=lambda value: value == 0.0,
     )
-    exit_point: Literal["random", "offset"] = Field(
-        default="random",
-        description="Where people come out of a portal: anywhere in it, or opposite to where "
-        "they went in.",
+    exit_point: Literal["random", "offset"] = default(
+        "random",
+        "Where people come out of a portal: anywhere in it, or opposite to where they went in.",
     )
-    goal_point: Literal["random", "ahead"] = Field(
-        default="random",
-        exclude_if=lambda value: value == "random",
-        description="Where in a portal people go on each trip: anywhere, so that ways cross, or "
+    goal_point: Literal["random", "ahead"] = default(
+        "random",
+        "Where in a portal people go on each trip: anywhere, so that ways cross, or "
         "straight ahead of where they come in or start.",
+        exclude_if=lambda value: value == "random",
     )
-    robot_response: RobotResponseChoice = Field(
-        default=HumanResponse(), description="How people respond to the robot."
+    robot_response: RobotResponseChoice = default(
+        HumanResponse(), "How people respond to the robot."
     )
-    routing: RoutingChoice | None = Field(
-        default=None,
+    routing: RoutingChoice | None = default(
+        None,
+        "How people find their way; without it `straight` to their goals.",
         exclude_if=lambda value: value is None,
-        description="How people find their way; without it `straight` to their goals.",
     )
-    steering: SteeringSpec | None = Field(
-        default=None,
-        exclude_if=unset,
-        description="Beside any policy: time gap, personal space, lanes, walls, wander.",
+    steering: SteeringSpec | None = default(
+        None, "Beside any policy: time gap, personal space, lanes, walls, wander.", exclude_if=unset
     )
-    seed: CrowdSeed = Field(default=CrowdSeed(), description="Draws the crowd.")
+    seed: CrowdSeed = default(CrowdSeed(), "Draws the crowd.")
 
     @property
     def names_nobody(self) -> bool:
@@ -208,10 +200,8 @@ class Crowd(Spec):
 class Goal(TaskGoal):
     """The zone that the robot's centre has to reach."""
 
-    kind: Literal["zone"] = Field(
-        default="zone",
-        exclude_if=lambda kind: kind == "zone",
-        description="A place; other kinds of goals are people.",
+    kind: Literal["zone"] = default(
+        "zone", "A place; other kinds of goals are people.", exclude_if=lambda kind: kind == "zone"
     )
     zone: str = Field(description="Name of the goal zone.")
 
@@ -237,12 +227,12 @@ class TaskSpec(Spec):
         strict=False, description="x, y (m) and heading (rad) at t = 0, world frame."
     )
     goal: GoalChoice = Field(description="A zone to reach, or a person to be with.")
-    time_limit: PositiveDuration = Field(default=180.0, description="The run ends here, s.")
-    when_ended: Literal["stay", "leave"] = Field(
-        default="stay",
-        exclude_if=lambda value: value == "stay",
-        description="Of one robot among several that has arrived, failed or run out of time: it "
+    time_limit: PositiveDuration = default(180.0, "The run ends here, s.")
+    when_ended: Literal["stay", "leave"] = default(
+        "stay",
+        "Of one robot among several that has arrived, failed or run out of time: it "
         "stays where it is, as an obstacle, or leaves.",
+        exclude_if=lambda value: value == "stay",
     )
 
     @property
@@ -265,7 +255,7 @@ class Robot(Spec):
         validate_default=False,  # a mismatch is replaced
         description="How commands become motion. Default of a holonomic robot: force.",
     )
-    sensors: dict[str, SerializeAsAny[SensorSpec]] = Field(default={}, description="Named sensors.")
+    sensors: dict[str, SerializeAsAny[SensorSpec]] = default({}, "Named sensors.")
     task: TaskSpec
 
     @field_validator("control")
@@ -293,22 +283,20 @@ class Robot(Spec):
 class Contact(Spec):
     """Compliance between robot and pedestrians: Hunt-Crossley, F = k d (1 + c d')."""
 
-    stiffness: Annotated[PositiveStiffness, BodyRegion()] = Field(
-        default=30000.0,
-        description="k, N/m, or a body region whose value it takes, such as lower_leg.",
+    stiffness: Annotated[PositiveStiffness, BodyRegion()] = default(
+        30000.0, "k, N/m, or a body region whose value it takes, such as lower_leg."
     )
-    dissipation: Annotated[NonNegativeDamping, Le(1)] = Field(
-        default=0.3,
-        description="c, s/m. With more than 1, steps of 1/128 s throw light robots away.",
+    dissipation: Annotated[NonNegativeDamping, Le(1)] = default(
+        0.3, "c, s/m. With more than 1, steps of 1/128 s throw light robots away."
     )
 
 
 class Rates(Spec):
     """Rates of events; powers of two, so that Drake's events coincide exactly."""
 
-    crowd: PositiveFrequency = Field(default=16.0, description="Decisions of the crowd, Hz.")
-    planner: PositiveFrequency = Field(default=16.0, description="Steps of the planner, Hz.")
-    log: PositiveFrequency = Field(default=16.0, description="Samples for metrics, Hz.")
+    crowd: PositiveFrequency = default(16.0, "Decisions of the crowd, Hz.")
+    planner: PositiveFrequency = default(16.0, "Steps of the planner, Hz.")
+    log: PositiveFrequency = default(16.0, "Samples for metrics, Hz.")
 
     @field_validator("crowd", "planner", "log")
     @classmethod
@@ -338,14 +326,14 @@ class Scenario(Spec):
     id: PathName = Field(
         description="Stable name, unique in its suite.", pattern=r"^[A-Za-z0-9_.+/-]+$"
     )
-    title: str = Field(default="", description="For people.")
+    title: str = default("", "For people.")
     environment: SerializeAsAny[EnvironmentSpec]
     crowd: Crowd | None = None
-    robots: dict[str, Robot] = Field(default={}, description="Named robots.")
-    contact: Contact = Field(default=Contact(), description="Robot against pedestrian.")
-    rates: Rates = Field(default=Rates(), description="How often things happen.")
-    references: Mapping[str, Scenario] = Field(
-        default={}, exclude=True, repr=False, description="Calibration runs, by name."
+    robots: dict[str, Robot] = default({}, "Named robots.")
+    contact: Contact = default(Contact(), "Robot against pedestrian.")
+    rates: Rates = default(Rates(), "How often things happen.")
+    references: Mapping[str, Scenario] = default(
+        {}, "Calibration runs, by name.", exclude=True, repr=False
     )
     #: Draws a scenario as HTML, for notebooks; registered by the Python API.
     draw_html: ClassVar[Callable[[Scenario], str] | None] = None

@@ -19,6 +19,7 @@ from pydantic import (
 
 from crowdbot.dsl.scenario.people_kinds import AppearanceName
 from crowdbot.dsl.spec.areas import Place
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.parameters import (
     AccelerationSample,
     DurationSample,
@@ -91,17 +92,17 @@ class Goals(Spec):
     areas: Annotated[tuple[str, ...], MinLen(1)] = Field(
         strict=False, description="Names of goal areas; of a `linked` walk, where it may begin."
     )
-    order: Literal["fixed", "random", "linked"] = Field(
-        default="fixed",
-        description="fixed: the areas in turn; random: any of them each time; linked: a random "
+    order: Literal["fixed", "random", "linked"] = default(
+        "fixed",
+        "fixed: the areas in turn; random: any of them each time; linked: a random "
         "walk on the areas' `next` that turns straight back only where nothing else follows.",
     )
-    count: Annotated[int, Ge(1), Le(1000)] | None = Field(
-        default=None, description="Points of the route; without it as many as areas."
+    count: Annotated[int, Ge(1), Le(1000)] | None = default(
+        None, "Points of the route; without it as many as areas."
     )
-    at_goal: RouteEnd = Field(
-        default="stop",
-        description="At the end: stand still, leave the world, or begin again; a `linked` loop "
+    at_goal: RouteEnd = default(
+        "stop",
+        "At the end: stand still, leave the world, or begin again; a `linked` loop "
         "first walks back the way it came.",
     )
 
@@ -115,43 +116,38 @@ class Spawn(Spec):
     """People who start in one area; missing fields are as in the crowd."""
 
     area: Place = Field(description="Name of a zone, or an area written here; bodies lie inside.")
-    count: Count | None = Field(default=None, description="How many; this or `density`.")
-    density: PositiveDensity | None = Field(
-        default=None, description="People per area, 1/m^2; this or `count`."
-    )
-    spacing: PositiveLength | None = Field(
-        default=None,
-        description="Least distance between the centres of two of them, m; without it, and never "
+    count: Count | None = default(None, "How many; this or `density`.")
+    density: PositiveDensity | None = default(None, "People per area, 1/m^2; this or `count`.")
+    spacing: PositiveLength | None = default(
+        None,
+        "Least distance between the centres of two of them, m; without it, and never "
         "less than, both radii.",
     )
-    heading: Heading = Field(
-        default="goal", description="At the start: an angle, to the first `goal`, or `random`; rad."
+    heading: Heading = default(
+        "goal", "At the start: an angle, to the first `goal`, or `random`; rad."
     )
-    groups: tuple[GroupSize, ...] = Field(
-        default=(), strict=False, description="Sizes of groups; without it everyone is alone."
+    groups: tuple[GroupSize, ...] = default(
+        (), "Sizes of groups; without it everyone is alone.", strict=False
     )
-    goals: Goals | None = Field(
-        default=None, description="A route; this, `portals` or `standing: true`."
+    goals: Goals | None = default(None, "A route; this, `portals` or `standing: true`.")
+    portals: tuple[str, str] | None = default(
+        None, "A stream: from the first portal to the second.", strict=False
     )
-    portals: tuple[str, str] | None = Field(
-        default=None, strict=False, description="A stream: from the first portal to the second."
+    standing: bool = default(False, "Whether they stay where they are.")
+    speed: SpeedChoice | None = default(None, "Preferred speed, m/s.")
+    radius: LengthSample | None = default(None, "Radius of the disc, m.")
+    mass: MassSample | None = default(None, "Mass in the physics, kg.")
+    max_speed: SpeedSample | None = default(None, "Largest walking speed, m/s.")
+    max_acceleration: AccelerationSample | None = default(
+        None, "Largest acceleration that people choose, m/s^2; pushes may exceed it."
     )
-    standing: bool = Field(default=False, description="Whether they stay where they are.")
-    speed: SpeedChoice | None = Field(default=None, description="Preferred speed, m/s.")
-    radius: LengthSample | None = Field(default=None, description="Radius of the disc, m.")
-    mass: MassSample | None = Field(default=None, description="Mass in the physics, kg.")
-    max_speed: SpeedSample | None = Field(default=None, description="Largest walking speed, m/s.")
-    max_acceleration: AccelerationSample | None = Field(
-        default=None,
-        description="Largest acceleration that people choose, m/s^2; pushes may exceed it.",
+    start_time: DurationSample = default(
+        DurationSample(value=0.0), "When each enters the world, s."
     )
-    start_time: DurationSample = Field(
-        default=DurationSample(value=0.0), description="When each enters the world, s."
-    )
-    policy: Names = Field(
-        default=(),
+    policy: Names = default(
+        (),
+        "Names in `crowd.policies`, one of which each draws; without it the crowd's.",
         strict=False,
-        description="Names in `crowd.policies`, one of which each draws; without it the crowd's.",
     )
 
     @model_validator(mode="after")
@@ -195,52 +191,46 @@ class Agent(Spec):
     )
     x: Length = Field(description="Start, m.")
     y: Length = Field(description="Start, m.")
-    heading: Angle | None = Field(
-        default=None, description="At the start, rad; without it to the first goal."
+    heading: Angle | None = default(None, "At the start, rad; without it to the first goal.")
+    speed: PositiveSpeed | None = default(
+        None, "Preferred speed, m/s; without it drawn from the crowd's."
     )
-    speed: PositiveSpeed | None = Field(
-        default=None, description="Preferred speed, m/s; without it drawn from the crowd's."
+    radius: PositiveLength | None = default(None, "Radius of the disc, m.")
+    mass: PositiveMass | None = default(None, "Mass in the physics, kg.")
+    max_speed: PositiveSpeed | None = default(None, "Largest speed, m/s.")
+    max_acceleration: PositiveAcceleration | None = default(
+        None, "Largest acceleration by own will, m/s^2."
     )
-    radius: PositiveLength | None = Field(default=None, description="Radius of the disc, m.")
-    mass: PositiveMass | None = Field(default=None, description="Mass in the physics, kg.")
-    max_speed: PositiveSpeed | None = Field(default=None, description="Largest speed, m/s.")
-    max_acceleration: PositiveAcceleration | None = Field(
-        default=None, description="Largest acceleration by own will, m/s^2."
+    start_time: NonNegativeDuration = default(0.0, "When it enters the world, s.")
+    group: Annotated[int, Ge(-1), Le(2**31 - 1)] = default(
+        -1, "Equal numbers belong together; -1: alone."
     )
-    start_time: NonNegativeDuration = Field(default=0.0, description="When it enters the world, s.")
-    group: Annotated[int, Ge(-1), Le(2**31 - 1)] = Field(
-        default=-1, description="Equal numbers belong together; -1: alone."
-    )
-    policy: str = Field(
-        default="", description="Name in `crowd.policies`; without it the crowd's own."
-    )
-    attention: Annotated[float, Ge(0), Lt(1)] | None = Field(
-        default=None,
-        description="How attentive it is compared with others: the least attentive ignore robots, "
+    policy: str = default("", "Name in `crowd.policies`; without it the crowd's own.")
+    attention: Annotated[float, Ge(0), Lt(1)] | None = default(
+        None,
+        "How attentive it is compared with others: the least attentive ignore robots, "
         "the next notice them late, see `robot_response`; without it drawn.",
     )
-    goals: tuple[Point, ...] = Field(
-        default=(), strict=False, description="Points of its route, m; these or `portals`."
+    goals: tuple[Point, ...] = default(
+        (), "Points of its route, m; these or `portals`.", strict=False
     )
-    at_goal: RouteEnd | None = Field(
-        default=None, description="At the end of the route; without it `stop`."
+    at_goal: RouteEnd | None = default(None, "At the end of the route; without it `stop`.")
+    portals: tuple[str, str] | None = default(
+        None, "A stream: from the first portal to the second.", strict=False
     )
-    portals: tuple[str, str] | None = Field(
-        default=None, strict=False, description="A stream: from the first portal to the second."
-    )
-    pauses: tuple[NonNegativeDuration, ...] = Field(
-        default=(),
+    pauses: tuple[NonNegativeDuration, ...] = default(
+        (),
+        "How long it stays at each goal, s; without it nowhere.",
         strict=False,
         exclude_if=lambda pauses: not pauses,
-        description="How long it stays at each goal, s; without it nowhere.",
     )
-    look: AppearanceName | None = Field(
-        default=None,
+    look: AppearanceName | None = default(
+        None,
+        "What sensors see; its usual radius, mass and height where none is given.",
         exclude_if=lambda look: look is None,
-        description="What sensors see; its usual radius, mass and height where none is given.",
     )
-    height: PositiveLength | None = Field(
-        default=None, exclude_if=lambda height: height is None, description="Height, m."
+    height: PositiveLength | None = default(
+        None, "Height, m.", exclude_if=lambda height: height is None
     )
 
     @model_validator(mode="after")

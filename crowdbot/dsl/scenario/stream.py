@@ -15,6 +15,7 @@ from pydantic import Field, model_validator
 
 from crowdbot.dsl.scenario.spawning import Count, GroupSize, Names, Point
 from crowdbot.dsl.spec.areas import Area, Place
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.parameters import SpeedChoice
 from crowdbot.dsl.spec.quantities import (
     NonNegativeDuration,
@@ -42,20 +43,18 @@ class Arrivals(Spec):
     Groups arrive together: an arrival is a group or a single person.
     """
 
-    rate: PositiveFrequency | None = Field(
-        default=None, description="Poisson arrivals: mean number in a second, 1/s."
+    rate: PositiveFrequency | None = default(
+        None, "Poisson arrivals: mean number in a second, 1/s."
     )
-    every: PositiveDuration | None = Field(
-        default=None, description="Steady arrivals: time between two, s."
+    every: PositiveDuration | None = default(None, "Steady arrivals: time between two, s.")
+    times: tuple[NonNegativeDuration, ...] = default(
+        (), "Scheduled arrivals, s; in any order.", strict=False
     )
-    times: tuple[NonNegativeDuration, ...] = Field(
-        default=(), strict=False, description="Scheduled arrivals, s; in any order."
+    begin: NonNegativeDuration = default(
+        0.0, "With `rate` and `every`: no one arrives before this time, s."
     )
-    begin: NonNegativeDuration = Field(
-        default=0.0, description="With `rate` and `every`: no one arrives before this time, s."
-    )
-    until: PositiveDuration | None = Field(
-        default=None, description="With `rate` and `every`: no one arrives from then on, s."
+    until: PositiveDuration | None = default(
+        None, "With `rate` and `every`: no one arrives from then on, s."
     )
 
     @model_validator(mode="after")
@@ -73,12 +72,11 @@ class Arrivals(Spec):
 class StreamBody(Spec):
     """Properties shared by people of a stream; missing ones are as in `crowd.body`."""
 
-    radius: PositiveLength | None = Field(default=None, description="Radius of the disc, m.")
-    mass: PositiveMass | None = Field(default=None, description="Mass in the physics, kg.")
-    max_speed: PositiveSpeed | None = Field(default=None, description="Largest speed, m/s.")
-    max_acceleration: PositiveAcceleration | None = Field(
-        default=None,
-        description="Largest acceleration that people choose, m/s^2; pushes may exceed it.",
+    radius: PositiveLength | None = default(None, "Radius of the disc, m.")
+    mass: PositiveMass | None = default(None, "Mass in the physics, kg.")
+    max_speed: PositiveSpeed | None = default(None, "Largest speed, m/s.")
+    max_acceleration: PositiveAcceleration | None = default(
+        None, "Largest acceleration that people choose, m/s^2; pushes may exceed it."
     )
 
 
@@ -88,23 +86,21 @@ class Stream(Spec):
     #: No kind is usual: each stream names its own.
     usual: ClassVar[str] = ""
     kind: str = Field(description="Pattern of the stream.")
-    count: Count | None = Field(default=None, description="How many people there are.")
-    speed: SpeedChoice | None = Field(
-        default=None, description="Preferred speed, m/s; without it the crowd's."
-    )
-    body: StreamBody = Field(default=StreamBody(), description="What differs from `crowd.body`.")
-    people: Names = Field(
-        default=(),
+    count: Count | None = default(None, "How many people there are.")
+    speed: SpeedChoice | None = default(None, "Preferred speed, m/s; without it the crowd's.")
+    body: StreamBody = default(StreamBody(), "What differs from `crowd.body`.")
+    people: Names = default(
+        (),
+        "Names in `crowd.people` that this stream is made of; without it all of them.",
         strict=False,
-        description="Names in `crowd.people` that this stream is made of; without it all of them.",
     )
-    policy: Names = Field(
-        default=(),
+    policy: Names = default(
+        (),
+        "Names in `crowd.policies`, one of which each draws; without it the crowd's.",
         strict=False,
-        description="Names in `crowd.policies`, one of which each draws; without it the crowd's.",
     )
-    groups: tuple[GroupSize, ...] = Field(
-        default=(), strict=False, description="Sizes of groups; without it everyone is alone."
+    groups: tuple[GroupSize, ...] = default(
+        (), "Sizes of groups; without it everyone is alone.", strict=False
     )
 
     #: Fields with places where people begin, and with places where they go.
@@ -204,10 +200,8 @@ class Misfit(NamedTuple):
 class PopulatedStream(Stream):
     """A stream of people who are present from the start, or who arrive."""
 
-    density: PositiveDensity | None = Field(
-        default=None, description="People per area of where they start, 1/m^2."
-    )
-    arrivals: Arrivals | None = Field(default=None, description="When people enter.")
+    density: PositiveDensity | None = default(None, "People per area of where they start, 1/m^2.")
+    arrivals: Arrivals | None = default(None, "When people enter.")
 
     @property
     def people_per_area(self) -> float | None:

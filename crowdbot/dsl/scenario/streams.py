@@ -25,6 +25,7 @@ from crowdbot.dsl.scenario.stream import (
     StreamEnd,
 )
 from crowdbot.dsl.spec.areas import Area, Place
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.outlines import along
 from crowdbot.dsl.spec.parameters import DurationSample
 from crowdbot.dsl.spec.quantities import Angle, PositiveDensity, PositiveLength
@@ -57,24 +58,21 @@ class ThroughStream(PopulatedStream):
 
     begin_fields: ClassVar[tuple[str, ...]] = ("origin", "start")
     goal_fields: ClassVar[tuple[str, ...]] = ("destination",)
-    kind: Literal["through"] = Field(default="through", description="Pattern of the stream.")
+    kind: Literal["through"] = default("through", "Pattern of the stream.")
     origin: Place = Field(
         description="Where they come from: name of a zone or portal, or an area written here."
     )
     destination: Place = Field(description="Where they go: named or given likewise.")
-    via: tuple[Place, ...] = Field(
-        default=(), strict=False, description="What they pass on the way, in turn, such as doors."
+    via: tuple[Place, ...] = default(
+        (), "What they pass on the way, in turn, such as doors.", strict=False
     )
-    start: Place | None = Field(
-        default=None,
-        description="Where those of `count` or `density` are at the start; without it the origin.",
+    start: Place | None = default(
+        None, "Where those of `count` or `density` are at the start; without it the origin."
     )
-    lanes: Lanes | None = Field(
-        default=None, description="Keep to lanes of origin, start and destination."
-    )
-    at_destination: StreamEnd | None = Field(
-        default=None,
-        description="return: come in again at the origin, so that their number stays the same; "
+    lanes: Lanes | None = default(None, "Keep to lanes of origin, start and destination.")
+    at_destination: StreamEnd | None = default(
+        None,
+        "return: come in again at the origin, so that their number stays the same; "
         "leave the world; stop there. By default people with arrivals leave, others return.",
     )
 
@@ -133,15 +131,11 @@ class DirectionsStream(Stream):
     """
 
     begin_fields: ClassVar[tuple[str, ...]] = ("area",)
-    kind: Literal["directions"] = Field(default="directions", description="Pattern of the stream.")
+    kind: Literal["directions"] = default("directions", "Pattern of the stream.")
     area: Place = Field(description="Where they walk: name of a zone, or an area written here.")
-    density: PositiveDensity | None = Field(
-        default=None, description="People per area, 1/m^2; this or `count`."
-    )
-    directions: tuple[Angle, ...] = Field(
-        default=(),
-        strict=False,
-        description="Directions to draw from, rad; without them any.",
+    density: PositiveDensity | None = default(None, "People per area, 1/m^2; this or `count`.")
+    directions: tuple[Angle, ...] = default(
+        (), "Directions to draw from, rad; without them any.", strict=False
     )
 
     @model_validator(mode="after")
@@ -165,23 +159,19 @@ class QueueStream(Stream):
     """People in a line, who move up, are served at its head one by one, and leave."""
 
     goal_fields: ClassVar[tuple[str, ...]] = ("destination",)
-    kind: Literal["queue"] = Field(default="queue", description="Pattern of the stream.")
+    kind: Literal["queue"] = default("queue", "Pattern of the stream.")
     line: Annotated[tuple[Point, ...], MinLen(2)] = Field(
         strict=False, description="Where the line runs, from the counter backwards, m."
     )
-    gap: PositiveLength = Field(
-        default=0.9, description="Between the centres of two in the line, m."
+    gap: PositiveLength = default(0.9, "Between the centres of two in the line, m.")
+    service: DurationSample = default(
+        DurationSample(value=10.0, spread=5.0), "How long each is served, s."
     )
-    service: DurationSample = Field(
-        default=DurationSample(value=10.0, spread=5.0), description="How long each is served, s."
-    )
-    arrivals: Arrivals | None = Field(
-        default=None, description="When people join its end; without it all stand there."
+    arrivals: Arrivals | None = default(
+        None, "When people join its end; without it all stand there."
     )
     destination: Place = Field(description="Where they go when served; a zone, portal or area.")
-    at_destination: Literal["leave", "stop"] = Field(
-        default="leave", description="leave the world, or stop there."
-    )
+    at_destination: Literal["leave", "stop"] = default("leave", "leave the world, or stop there.")
 
     @model_validator(mode="after")
     def _one_number(self) -> QueueStream:
@@ -231,25 +221,18 @@ class TalkingStream(Stream):
 
     begin_fields: ClassVar[tuple[str, ...]] = ("area",)
     goal_fields: ClassVar[tuple[str, ...]] = ("destination",)
-    kind: Literal["talking"] = Field(default="talking", description="Pattern of the stream.")
+    kind: Literal["talking"] = default("talking", "Pattern of the stream.")
     count: Count = Field(description="How many people there are.")
     area: Place = Field(description="Where they stand: name of a zone, or an area written here.")
     groups: Annotated[tuple[GroupSize, ...], MinLen(1)] = Field(
         strict=False, description="Sizes of the circles."
     )
-    gap: PositiveLength = Field(
-        default=0.9, description="Between the centres of neighbours in a circle, m."
+    gap: PositiveLength = default(0.9, "Between the centres of neighbours in a circle, m.")
+    duration: DurationSample = default(
+        DurationSample(value=0.0), "With a destination: how long a group talks, s."
     )
-    duration: DurationSample = Field(
-        default=DurationSample(value=0.0),
-        description="With a destination: how long a group talks, s.",
-    )
-    destination: Place | None = Field(
-        default=None, description="Where they go afterwards; without it they stay."
-    )
-    at_destination: Literal["leave", "stop"] = Field(
-        default="leave", description="leave the world, or stop there."
-    )
+    destination: Place | None = default(None, "Where they go afterwards; without it they stay.")
+    at_destination: Literal["leave", "stop"] = default("leave", "leave the world, or stop there.")
 
     @property
     def starts_in(self) -> Place:
@@ -261,19 +244,19 @@ class WanderingStream(PopulatedStream):
     """People who stroll between goal areas at random, and stay there for a while."""
 
     begin_fields: ClassVar[tuple[str, ...]] = ("area",)
-    kind: Literal["wandering"] = Field(default="wandering", description="Pattern of the stream.")
+    kind: Literal["wandering"] = default("wandering", "Pattern of the stream.")
     area: Place = Field(description="Where they start: name of a zone, or an area written here.")
     areas: Annotated[tuple[str, ...], MinLen(1)] = Field(
         strict=False, description="Names of goal areas; where they have `next`, that follows."
     )
-    visits: Annotated[int, Gt(0), Le(1000)] = Field(
-        default=12, description="Areas that each visits, then again from the first."
+    visits: Annotated[int, Gt(0), Le(1000)] = default(
+        12, "Areas that each visits, then again from the first."
     )
-    pause: DurationSample = Field(
-        default=DurationSample(value=0.0), description="How long each lingers in an area, s."
+    pause: DurationSample = default(
+        DurationSample(value=0.0), "How long each lingers in an area, s."
     )
-    at_end: Literal["again", "leave", "stop"] = Field(
-        default="again", description="After the visits: begin again, leave the world, or stop."
+    at_end: Literal["again", "leave", "stop"] = default(
+        "again", "After the visits: begin again, leave the world, or stop."
     )
 
     @property

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 from pydantic import Discriminator, Field, Tag
 
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.quantities import Angle, Length, PositiveLength
 from crowdbot.dsl.spec.spec import Rectangle, Spec
 from crowdbot.dsl.spec.unions import AnyOf
@@ -24,7 +25,7 @@ class Area(Spec):
     size: tuple[PositiveLength, PositiveLength] = Field(
         strict=False, description="Length along its own x and y, m."
     )
-    rotation: Angle = Field(default=0.0, description="Turned about its middle by this angle, rad.")
+    rotation: Angle = default(0.0, "Turned about its middle by this angle, rad.")
 
     @classmethod
     def of(cls, box: Rectangle) -> Area:
@@ -91,6 +92,6 @@ class GoalArea(Spec):
     """An area in which goals are drawn uniformly."""
 
     area: Place = Field(description="Name of a zone, or an area written here.")
-    next: tuple[str, ...] = Field(
-        default=(), strict=False, description="Goal areas that may follow in a `linked` walk."
+    next: tuple[str, ...] = default(
+        (), "Goal areas that may follow in a `linked` walk.", strict=False
     )

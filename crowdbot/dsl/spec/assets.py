@@ -14,6 +14,7 @@ from typing import Annotated, Any
 from annotated_types import MinLen
 from pydantic import ConfigDict, Field, PrivateAttr, model_validator
 
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.spec import Spec
 from crowdbot.dsl.text.bounded_files import open_file
 from crowdbot.errors import InputError
@@ -29,10 +30,10 @@ class Asset(Spec):
     path: Annotated[str, MinLen(1)] = Field(
         description="Path, relative to the file that names it, or `NAME:path` in a plugin's folder."
     )
-    sha256: str | None = Field(
-        default=None,
+    sha256: str | None = default(
+        None,
+        "Of the content, filled in; written, the file has to have this content.",
         pattern=r"^[0-9a-f]{64}$",
-        description="Of the content, filled in; written, the file has to have this content.",
     )
     _file: Path | None = PrivateAttr(default=None)
 

@@ -7,8 +7,9 @@ from collections.abc import Collection, Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 from annotated_types import MinLen
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, model_validator
 
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.quantities import Angle
 from crowdbot.dsl.spec.reading_errors import ReadingError
 from crowdbot.dsl.spec.spec import ComponentSpec, Rectangle, Spec
@@ -44,36 +45,25 @@ class Agreement(NamedTuple):
 class FloorContact(Spec):
     """Grip of wheels on the floor, which is level: there are no ramps."""
 
-    friction: float = Field(
-        default=1.0,
+    friction: float = default(
+        1.0,
+        "Friction of a tyre on the floor, static and sliding: a ratio of forces.",
         gt=0.0,
         le=1.5,
-        description="Friction of a tyre on the floor, static and sliding: a ratio of forces.",
     )
 
 
 class SceneLight(Spec):
     """Light of a scene, in colour images and in the view in three dimensions only."""
 
-    elevation: Angle = Field(
-        default=math.radians(54.2), ge=0.0, le=math.pi / 2, description="Of the sun, rad."
+    elevation: Angle = default(math.radians(54.2), "Of the sun, rad.", ge=0.0, le=math.pi / 2)
+    azimuth: Angle = default(math.radians(-123.7), "Direction in which the sun is, from x, rad.")
+    sun: float = default(1.0, "Strength of the sun, as a factor.", ge=0.0, le=3.0)
+    ambient: float = default(
+        1.0, "Strength of the light from all sides, as a factor.", ge=0.0, le=3.0
     )
-    azimuth: Angle = Field(
-        default=math.radians(-123.7), description="Direction in which the sun is, from x, rad."
-    )
-    sun: float = Field(default=1.0, ge=0.0, le=3.0, description="Strength of the sun, as a factor.")
-    ambient: float = Field(
-        default=1.0,
-        ge=0.0,
-        le=3.0,
-        description="Strength of the light from all sides, as a factor.",
-    )
-    colour: str = Field(
-        default="#ffffff", pattern=r"^#[0-9a-fA-F]{6}$", description="Of the sunlight, `#rrggbb`."
-    )
-    sky: str = Field(
-        default="#bfd9f2", pattern=r"^#[0-9a-fA-F]{6}$", description="Of the sky, `#rrggbb`."
-    )
+    colour: str = default("#ffffff", "Of the sunlight, `#rrggbb`.", pattern=r"^#[0-9a-fA-F]{6}$")
+    sky: str = default("#bfd9f2", "Of the sky, `#rrggbb`.", pattern=r"^#[0-9a-fA-F]{6}$")
 
     @property
     def towards_sun(self) -> tuple[float, float, float]:
@@ -91,20 +81,20 @@ class EnvironmentSpec(ComponentSpec):
     """
 
     category: ClassVar[str] = "environment"
-    zones: dict[str, Rectangle] = Field(default={}, description="Named areas of the floor.")
-    portals: dict[str, Rectangle] = Field(
-        default={}, description="Named areas through which people leave and re-enter."
+    zones: dict[str, Rectangle] = default({}, "Named areas of the floor.")
+    portals: dict[str, Rectangle] = default(
+        {}, "Named areas through which people leave and re-enter."
     )
 
-    floor: FloorContact = Field(
-        default=FloorContact(),
+    floor: FloorContact = default(
+        FloorContact(),
+        "How wheels grip the floor; outside the hash while it is as usual.",
         exclude_if=lambda floor: floor == FloorContact(),
-        description="How wheels grip the floor; outside the hash while it is as usual.",
     )
-    light: SceneLight | None = Field(
-        default=None,
+    light: SceneLight | None = default(
+        None,
+        "Light of the scene; unset: that of a bright day, and outside the hash.",
         exclude_if=lambda light: light is None,
-        description="Light of the scene; unset: that of a bright day, and outside the hash.",
     )
 
     def place(self) -> Place | None:
@@ -176,16 +166,16 @@ class SensorSpec(ComponentSpec):
     """Abstract sensor on a robot."""
 
     category: ClassVar[str] = "sensor"
-    link: str | None = Field(
-        default=None,
+    link: str | None = default(
+        None,
+        "Link of the robot's description that it is mounted on, in place of `mount`.",
         exclude_if=lambda link: link is None,
-        description="Link of the robot's description that it is mounted on, in place of `mount`.",
     )
-    errors: dict[str, ReadingError] = Field(
-        default={},
-        exclude_if=lambda errors: not errors,
-        description="Named errors that are added to its readings, in the order of their names; "
+    errors: dict[str, ReadingError] = default(
+        {},
+        "Named errors that are added to its readings, in the order of their names; "
         "outside the hash while there are none.",
+        exclude_if=lambda errors: not errors,
     )
 
     @model_validator(mode="before")

@@ -7,6 +7,7 @@ from typing import Annotated, Any, ClassVar
 from annotated_types import Ge
 from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.quantities import (
     NonNegativeDuration,
     NonNegativeLength,
@@ -50,22 +51,22 @@ class LengthSample(Sample):
     """A length, m; each agent samples uniformly between value - spread and value + spread."""
 
     value: PositiveLength = Field(description="Middle, m.")
-    spread: NonNegativeLength = Field(default=0.0, description="Largest difference from it, m.")
+    spread: NonNegativeLength = default(0.0, "Largest difference from it, m.")
 
 
 class SpeedSample(Sample):
     """A speed, m/s; each agent samples uniformly between value - spread and value + spread."""
 
     value: PositiveSpeed = Field(description="Middle, m/s.")
-    spread: NonNegativeSpeed = Field(default=0.0, description="Largest difference from it, m/s.")
+    spread: NonNegativeSpeed = default(0.0, "Largest difference from it, m/s.")
 
 
 class AccelerationSample(Sample):
     """An acceleration, m/s^2; sampled uniformly between value - spread and value + spread."""
 
     value: PositiveAcceleration = Field(description="Middle, m/s^2.")
-    spread: Annotated[float, Ge(0), Quantity("acceleration")] = Field(
-        default=0.0, description="Largest difference from it, m/s^2."
+    spread: Annotated[float, Ge(0), Quantity("acceleration")] = default(
+        0.0, "Largest difference from it, m/s^2."
     )
 
 
@@ -73,8 +74,8 @@ class MassSample(Sample):
     """A mass, kg; each agent samples uniformly between value - spread and value + spread."""
 
     value: PositiveMass = Field(description="Middle, kg.")
-    spread: Annotated[float, Ge(0), Quantity("mass")] = Field(
-        default=0.0, description="Largest difference from it, kg."
+    spread: Annotated[float, Ge(0), Quantity("mass")] = default(
+        0.0, "Largest difference from it, kg."
     )
 
 
@@ -83,7 +84,7 @@ class DurationSample(Sample):
 
     may_be_zero: ClassVar[bool] = True
     value: NonNegativeDuration = Field(description="Middle, s.")
-    spread: NonNegativeDuration = Field(default=0.0, description="Largest difference from it, s.")
+    spread: NonNegativeDuration = default(0.0, "Largest difference from it, s.")
 
 
 class SpeedDistribution(Spec):

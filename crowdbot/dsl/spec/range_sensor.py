@@ -6,9 +6,10 @@ import math
 from typing import Annotated, Any, ClassVar
 
 from annotated_types import Ge, Gt, Le, Lt
-from pydantic import BeforeValidator, Field, SerializeAsAny, model_validator
+from pydantic import BeforeValidator, SerializeAsAny, model_validator
 
 from crowdbot.dsl.spec.component_specs import NoiseSpec, SensorSpec
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.quantities import (
     NonNegativeLength,
     PositiveFrequency,
@@ -38,29 +39,20 @@ class RangeSensorSpec(SensorSpec):
     """Abstract sensor that measures distances."""
 
     parts_field: ClassVar[str] = "noise"
-    mount: Mount = Field(default=Mount(), description="Pose on the robot.")
-    rate: PositiveFrequency = Field(default=8.0, le=128, description="Readings per second, Hz.")
-    range_min: NonNegativeLength = Field(
-        default=0.2, description="Nearest reading; what is nearer reads this, m."
+    mount: Mount = default(Mount(), "Pose on the robot.")
+    rate: PositiveFrequency = default(8.0, "Readings per second, Hz.", le=128)
+    range_min: NonNegativeLength = default(0.2, "Nearest reading; what is nearer reads this, m.")
+    range_max: PositiveLength = default(4.5, "Farthest hit, m.")
+    max_incidence: Incidence = default(
+        math.pi / 2, "Surfaces struck at a larger angle to their normal return nothing, rad."
     )
-    range_max: PositiveLength = Field(default=4.5, description="Farthest hit, m.")
-    max_incidence: Incidence = Field(
-        default=math.pi / 2,
-        description="Surfaces struck at a larger angle to their normal return nothing, rad.",
+    bits: Annotated[int, Ge(0), Le(32)] = default(
+        0, "Readings are rounded down to 2^bits steps of the range; 0: no rounding."
     )
-    bits: Annotated[int, Ge(0), Le(32)] = Field(
-        default=0,
-        description="Readings are rounded down to 2^bits steps of the range; 0: no rounding.",
-    )
-    dropout: Annotated[float, Ge(0), Lt(1)] = Field(
-        default=0.0, description="Probability that a reading is lost."
-    )
+    dropout: Annotated[float, Ge(0), Lt(1)] = default(0.0, "Probability that a reading is lost.")
     noise: Annotated[
         NoiseMap, BeforeValidator(_short_form, json_schema_input_type=NonNegativeLength | NoiseMap)
-    ] = Field(
-        default={},
-        description="Named errors, added in the order of names; a length is one Gaussian's std.",
-    )
+    ] = default({}, "Named errors, added in the order of names; a length is one Gaussian's std.")
 
     @model_validator(mode="after")
     def _range_ordered(self) -> RangeSensorSpec:

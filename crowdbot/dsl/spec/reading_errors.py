@@ -10,18 +10,19 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Le
 from pydantic import Field
 
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.spec import Spec
 
 
 class _ReadingError(Spec):
     """Fields that every error of a reading has."""
 
-    entries: tuple[Annotated[int, Ge(0)], ...] | None = Field(
-        default=None,
+    entries: tuple[Annotated[int, Ge(0)], ...] | None = default(
+        None,
+        "Which numbers of a reading, counted from 0 along its last axis: 2 is the yaw "
+        "of odometry; unset: all.",
         strict=False,
         min_length=1,
-        description="Which numbers of a reading, counted from 0 along its last axis: 2 is the yaw "
-        "of odometry; unset: all.",
     )
 
 
@@ -30,7 +31,7 @@ class GaussianError(_ReadingError):
 
     kind: Literal["gaussian"] = "gaussian"
     std: Annotated[float, Ge(0)] = Field(description="Standard deviation, unit of the reading.")
-    mean: float = Field(default=0.0, description="Mean, unit of the reading.")
+    mean: float = default(0.0, "Mean, unit of the reading.")
 
 
 class OffsetError(_ReadingError):
@@ -44,12 +45,12 @@ class PeakError(_ReadingError):
     """Rare, large errors."""
 
     kind: Literal["peak"] = "peak"
-    probability: Annotated[float, Ge(0), Le(1)] = Field(
-        default=0.01, description="Probability of a peak in each number of each reading."
+    probability: Annotated[float, Ge(0), Le(1)] = default(
+        0.01, "Probability of a peak in each number of each reading."
     )
-    mean: float = Field(default=2.0, description="Mean height of a peak, unit of the reading.")
-    std: Annotated[float, Ge(0)] = Field(
-        default=1.0, description="Standard deviation of heights, unit of the reading."
+    mean: float = default(2.0, "Mean height of a peak, unit of the reading.")
+    std: Annotated[float, Ge(0)] = default(
+        1.0, "Standard deviation of heights, unit of the reading."
     )
 
 

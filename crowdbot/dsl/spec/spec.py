@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler, model_v
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.quantities import Angle, Length, PositiveLength
 
 
@@ -79,10 +80,10 @@ class ComponentSpec(Spec):
 class Mount(Spec):
     """Pose of a sensor on the robot, from base_link: x forward, y left, z up (REP-103)."""
 
-    x: Length = Field(default=0.0, description="Forward offset, m.")
-    y: Length = Field(default=0.0, description="Offset to the left, m.")
-    z: Length = Field(default=0.0, description="Height above base_link, m.")
-    yaw: Angle = Field(default=0.0, description="Heading, rad, counter-clockwise.")
+    x: Length = default(0.0, "Forward offset, m.")
+    y: Length = default(0.0, "Offset to the left, m.")
+    z: Length = default(0.0, "Height above base_link, m.")
+    yaw: Angle = default(0.0, "Heading, rad, counter-clockwise.")
 
 
 class TiltableMount(Mount):
@@ -92,15 +93,13 @@ class TiltableMount(Mount):
     positive pitch it looks down, with a roll of half a turn it hangs upside down.
     """
 
-    roll: Angle = Field(
-        default=0.0,
+    roll: Angle = default(
+        0.0,
+        "About its own x, rad; positive: the left side goes up.",
         exclude_if=lambda value: value == 0.0,
-        description="About its own x, rad; positive: the left side goes up.",
     )
-    pitch: Angle = Field(
-        default=0.0,
-        exclude_if=lambda value: value == 0.0,
-        description="About its y, rad; positive: it looks down.",
+    pitch: Angle = default(
+        0.0, "About its y, rad; positive: it looks down.", exclude_if=lambda value: value == 0.0
     )
 
     @model_validator(mode="before")
@@ -148,9 +147,9 @@ class Range(Spec):
 
     model_config = ConfigDict(json_schema_extra={"short": "value"})
 
-    value: PositiveLength = Field(default=5.0, description="Distance, m.")
-    measure: Literal["centre", "surface"] = Field(
-        default="centre", description="Between centres, or between the surfaces of the discs."
+    value: PositiveLength = default(5.0, "Distance, m.")
+    measure: Literal["centre", "surface"] = default(
+        "centre", "Between centres, or between the surfaces of the discs."
     )
 
     @model_validator(mode="before")

@@ -6,8 +6,9 @@ import re
 from datetime import UTC, datetime, time
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
+from pydantic import AfterValidator, WithJsonSchema, model_validator
 
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.spec import Spec
 
 #: The form in which planners are handed in.
@@ -39,33 +40,25 @@ Moment = Annotated[
 class Round(Spec):
     """A round of a challenge; all days begin and end in UTC."""
 
-    opens: Moment | None = Field(
-        default=None, description="Day or moment from which planners are taken."
+    opens: Moment | None = default(None, "Day or moment from which planners are taken.")
+    closes: Moment | None = default(
+        None, "Last day, or the moment, until which planners are taken."
     )
-    closes: Moment | None = Field(
-        default=None, description="Last day, or the moment, until which planners are taken."
-    )
-    planners: HandedIn = Field(
-        default="any",
-        description="`sealed`: only planners that were handed in sealed, and that the organisers "
+    planners: HandedIn = default(
+        "any",
+        "`sealed`: only planners that were handed in sealed, and that the organisers "
         "ran, are ranked.",
     )
-    contact: str = Field(default="", max_length=_TEXT, description="Whom to ask.")
-    organisers: str = Field(default="", max_length=_TEXT, description="Who decides.")
-    venue: str = Field(
-        default="",
-        max_length=_TEXT,
-        description="Where results are presented, such as a conference.",
-    )
-    prize: str = Field(default="", max_length=_TEXT, description="What the best get.")
-    about: str = Field(
-        default="",
+    contact: str = default("", "Whom to ask.", max_length=_TEXT)
+    organisers: str = default("", "Who decides.", max_length=_TEXT)
+    venue: str = default("", "Where results are presented, such as a conference.", max_length=_TEXT)
+    prize: str = default("", "What the best get.", max_length=_TEXT)
+    about: str = default(
+        "",
+        "Text for the challenge's site; an empty line begins a paragraph.",
         max_length=_LONG_TEXT,
-        description="Text for the challenge's site; an empty line begins a paragraph.",
     )
-    rules: str = Field(
-        default="", max_length=_TEXT, description="Address of the rules, or the rules in a line."
-    )
+    rules: str = default("", "Address of the rules, or the rules in a line.", max_length=_TEXT)
 
     @model_validator(mode="after")
     def _in_order(self) -> Round:

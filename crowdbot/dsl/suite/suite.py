@@ -28,6 +28,7 @@ from annotated_types import Ge, Le
 from pydantic import Field, WithJsonSchema
 
 from crowdbot.dsl.checks.pydantic_errors import validate
+from crowdbot.dsl.spec.default import default
 from crowdbot.dsl.spec.spec import Spec
 from crowdbot.dsl.suite.commitment import COMMITMENT, SALT, read_commitment
 from crowdbot.dsl.suite.installed import Installed, check_metrics, check_versions
@@ -83,44 +84,36 @@ class SuiteHead(Spec):
     """Name, title and seed of a suite."""
 
     id: PathName = Field(pattern=r"^[A-Za-z0-9_.-]+$", description="Name of the suite.")
-    title: str = Field(
-        default="", description="What the suite is about, for people who read a list of suites."
+    title: str = default("", "What the suite is about, for people who read a list of suites.")
+    seed: Annotated[int, Ge(0), Le(2**63 - 1)] = default(0, "Root of every crowd's random numbers.")
+    commitment: str | None = default(
+        None, "Hash of seed, salt and document, published before the seed is.", pattern=COMMITMENT
     )
-    seed: Annotated[int, Ge(0), Le(2**63 - 1)] = Field(
-        default=0, description="Root of every crowd's random numbers."
-    )
-    commitment: str | None = Field(
-        default=None,
-        pattern=COMMITMENT,
-        description="Hash of seed, salt and document, published before the seed is.",
-    )
-    salt: str | None = Field(
-        default=None,
+    salt: str | None = default(
+        None,
+        "Hexadecimal digits that reveal the seed of a commitment, together with it.",
         pattern=SALT,
-        description="Hexadecimal digits that reveal the seed of a commitment, together with it.",
     )
-    files: tuple[CommittedFile, ...] = Field(
-        default=(),
-        strict=False,
-        description="Files that the document names, such as a floor plan, and that have to stay as "
+    files: tuple[CommittedFile, ...] = default(
+        (),
+        "Files that the document names, such as a floor plan, and that have to stay as "
         "they are; written by `crowdbot draws commit`.",
+        strict=False,
     )
 
 
 class Seeds(Spec):
     """Axes that change the random numbers; combinations that differ in other axes share them."""
 
-    crowd: tuple[str, ...] | None = Field(
-        default=None,
-        strict=False,
-        description="Axes that change the drawn crowd; default: all.",
+    crowd: tuple[str, ...] | None = default(
+        None, "Axes that change the drawn crowd; default: all.", strict=False
     )
-    runs: tuple[Annotated[int, Ge(0), Le(2**63 - 1)], ...] = Field(
-        default=(0,),
+    runs: tuple[Annotated[int, Ge(0), Le(2**63 - 1)], ...] = default(
+        (0,),
+        "Run seeds that a bundle of this suite consists of, in rising order.",
         strict=False,
         min_length=1,
         max_length=MAX_RUN_SEEDS,
-        description="Run seeds that a bundle of this suite consists of, in rising order.",
     )
 
 
@@ -130,33 +123,25 @@ class SuiteDocument(Spec):
     crowdbot: int = Field(description="Version of the format.")
     suite: SuiteHead
     base: dict[str, Any] = Field(description="What all scenarios have in common.")
-    matrix: Any = Field(
-        default=None,
-        description="Axes of variation: axis, label, and the fields that the label overrides.",
+    matrix: Any = default(
+        None, "Axes of variation: axis, label, and the fields that the label overrides."
     )
-    only: _Choices = Field(
-        default=None,
-        description="Combinations that stay: labels by axis, or a list of such maps, of which one "
-        "has to fit.",
+    only: _Choices = default(
+        None,
+        "Combinations that stay: labels by axis, or a list of such maps, of which one has to fit.",
     )
-    exclude: _Choices = Field(
-        default=None, description="Combinations that are left out, written as in `only`."
+    exclude: _Choices = default(None, "Combinations that are left out, written as in `only`.")
+    draws: Annotated[int, Ge(1), Le(MAX_COMBINATIONS)] = default(
+        1, "Crowd draws of each condition: as many scenarios, with other people each."
     )
-    draws: Annotated[int, Ge(1), Le(MAX_COMBINATIONS)] = Field(
-        default=1,
-        description="Crowd draws of each condition: as many scenarios, with other people each.",
+    seeds: Seeds | None = default(None, "Axes of the random numbers.")
+    metrics: list[str] | None = default(None, "Metrics to score; default all.")
+    record: Recorded | None = default(
+        None, "What `crowdbot simulate` records where it is not told; outside the hash."
     )
-    seeds: Seeds | None = Field(default=None, description="Axes of the random numbers.")
-    metrics: list[str] | None = Field(default=None, description="Metrics to score; default all.")
-    record: Recorded | None = Field(
-        default=None,
-        description="What `crowdbot simulate` records where it is not told; outside the hash.",
-    )
-    round: Round | None = Field(
-        default=None, description="Dates and rules of a challenge; outside the hash."
-    )
-    references: dict[str, dict[str, Any]] = Field(default={}, description="Calibration runs.")
-    kinds: _Versions = Field(default=None, description="Least spec_version of components, by kind.")
+    round: Round | None = default(None, "Dates and rules of a challenge; outside the hash.")
+    references: dict[str, dict[str, Any]] = default({}, "Calibration runs.")
+    kinds: _Versions = default(None, "Least spec_version of components, by kind.")
 
 
 class ScenarioDocument(Spec):
@@ -164,13 +149,12 @@ class ScenarioDocument(Spec):
 
     crowdbot: int = Field(description="Version of the format.")
     scenario: dict[str, Any] = Field(description="All fields of one scenario.")
-    metrics: list[str] | None = Field(default=None, description="Metrics to score; default all.")
-    record: Recorded | None = Field(
-        default=None,
-        description="What `crowdbot simulate` records where it is not told; outside the hash.",
+    metrics: list[str] | None = default(None, "Metrics to score; default all.")
+    record: Recorded | None = default(
+        None, "What `crowdbot simulate` records where it is not told; outside the hash."
     )
-    references: dict[str, dict[str, Any]] = Field(default={}, description="Calibration runs.")
-    kinds: _Versions = Field(default=None, description="Least spec_version of components, by kind.")
+    references: dict[str, dict[str, Any]] = default({}, "Calibration runs.")
+    kinds: _Versions = default(None, "Least spec_version of components, by kind.")
 
 
 @dataclass(frozen=True, slots=True)

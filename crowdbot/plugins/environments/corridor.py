@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from crowdbot.plugin import (
     Component,
@@ -14,6 +14,7 @@ from crowdbot.plugin import (
     Place,
     PositiveLength,
     Rectangle,
+    default,
 )
 from crowdbot.plugins.environments.pillar_sets import PillarFieldSpec, PillarGridSpec, all_pillars
 from crowdbot.plugins.environments.shapes import PillarSpec, check_heights
@@ -23,17 +24,17 @@ class CorridorSpec(EnvironmentSpec):
     """A corridor along x; the origin is on the centre line of the start wall."""
 
     kind: Literal["corridor"] = "corridor"
-    length: PositiveLength = Field(default=50.0, description="Length along x, m.")
-    width: PositiveLength = Field(default=10.0, description="Width along y, m.")
-    wall_height: PositiveLength = Field(default=2.5, description="Height of the walls, m.")
-    pillars: dict[str, PillarSpec] = Field(
-        default={}, exclude_if=lambda value: not value, description="Named round pillars."
+    length: PositiveLength = default(50.0, "Length along x, m.")
+    width: PositiveLength = default(10.0, "Width along y, m.")
+    wall_height: PositiveLength = default(2.5, "Height of the walls, m.")
+    pillars: dict[str, PillarSpec] = default(
+        {}, "Named round pillars.", exclude_if=lambda value: not value
     )
-    pillar_grid: PillarGridSpec | None = Field(
-        default=None, exclude_if=lambda value: value is None, description="Pillars in a grid."
+    pillar_grid: PillarGridSpec | None = default(
+        None, "Pillars in a grid.", exclude_if=lambda value: value is None
     )
-    pillar_field: PillarFieldSpec | None = Field(
-        default=None, exclude_if=lambda value: value is None, description="Pillars at random."
+    pillar_field: PillarFieldSpec | None = default(
+        None, "Pillars at random.", exclude_if=lambda value: value is None
     )
 
     @model_validator(mode="after")

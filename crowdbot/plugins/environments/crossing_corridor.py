@@ -6,7 +6,6 @@ import math
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Le
-from pydantic import Field
 
 from crowdbot.plugin import (
     Component,
@@ -15,6 +14,7 @@ from crowdbot.plugin import (
     PositiveLength,
     Quantity,
     Rectangle,
+    default,
     outlines,
 )
 from crowdbot.plugins.environments.walkways import (
@@ -34,16 +34,14 @@ class CrossingCorridorSpec(WalkwaySpec):
     """Two corridors that cross at the origin; the first lies along x."""
 
     kind: Literal["crossing_corridor"] = "crossing_corridor"
-    length: PositiveLength = Field(default=30.0, description="Of the first corridor, m.")
-    width: PositiveLength = Field(default=5.0, description="Of the first corridor, m.")
-    cross_length: PositiveLength = Field(default=30.0, description="Of the second one, m.")
-    cross_width: PositiveLength = Field(default=5.0, description="Of the second one, m.")
-    angle: Annotated[float, Ge(math.radians(30)), Le(math.radians(150)), Quantity("angle")] = Field(
-        default=_RIGHT, description="From the first to the second, 30 to 150 deg, rad."
+    length: PositiveLength = default(30.0, "Of the first corridor, m.")
+    width: PositiveLength = default(5.0, "Of the first corridor, m.")
+    cross_length: PositiveLength = default(30.0, "Of the second one, m.")
+    cross_width: PositiveLength = default(5.0, "Of the second one, m.")
+    angle: Annotated[float, Ge(math.radians(30)), Le(math.radians(150)), Quantity("angle")] = (
+        default(_RIGHT, "From the first to the second, 30 to 150 deg, rad.")
     )
-    corner_radius: NonNegativeLength = Field(
-        default=0.0, description="Of the four corners, m; 0: square."
-    )
+    corner_radius: NonNegativeLength = default(0.0, "Of the four corners, m; 0: square.")
 
     def place(self) -> Place:
         """Return the place with four arms; people walk through their ends."""

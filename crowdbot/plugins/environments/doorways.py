@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
-
 from crowdbot.plugin import (
     Component,
     Length,
@@ -14,6 +12,7 @@ from crowdbot.plugin import (
     PositiveLength,
     Rectangle,
     Solid,
+    default,
     outlines,
 )
 from crowdbot.plugins.environments.walkways import PORTAL_DEPTH, WalkwaySpec, box, walkway
@@ -22,13 +21,12 @@ from crowdbot.plugins.environments.walkways import PORTAL_DEPTH, WalkwaySpec, bo
 class _TwoRoomsSpec(WalkwaySpec):
     """Two rooms joined by a passage along x; the origin is in its middle."""
 
-    room_length: PositiveLength = Field(default=10.0, description="Of each room along x, m.")
-    width: PositiveLength = Field(default=8.0, description="Of both rooms along y, m.")
-    opening: PositiveLength = Field(default=1.0, description="Width of the way between them, m.")
-    offset: Length = Field(default=0.0, description="Its middle along y, m.")
-    ends: Literal["walls", "open"] = Field(
-        default="walls",
-        description="At the far sides of the rooms: walls, or people go on through portals.",
+    room_length: PositiveLength = default(10.0, "Of each room along x, m.")
+    width: PositiveLength = default(8.0, "Of both rooms along y, m.")
+    opening: PositiveLength = default(1.0, "Width of the way between them, m.")
+    offset: Length = default(0.0, "Its middle along y, m.")
+    ends: Literal["walls", "open"] = default(
+        "walls", "At the far sides of the rooms: walls, or people go on through portals."
     )
 
     @property
@@ -105,7 +103,7 @@ class DoorwaySpec(_TwoRoomsSpec):
     """Two rooms with a door in the wall between them."""
 
     kind: Literal["doorway"] = "doorway"
-    thickness: PositiveLength = Field(default=0.2, description="Of the wall, m.")
+    thickness: PositiveLength = default(0.2, "Of the wall, m.")
 
     @property
     def depth(self) -> float:
@@ -117,9 +115,9 @@ class BottleneckSpec(_TwoRoomsSpec):
     """A hall that narrows to a passage, as in experiments on the flow through bottlenecks."""
 
     kind: Literal["bottleneck"] = "bottleneck"
-    length: PositiveLength = Field(default=4.0, description="Of the passage, m.")
-    funnel: NonNegativeLength = Field(
-        default=0.0, description="How far the corners before the passage are cut off, m."
+    length: PositiveLength = default(4.0, "Of the passage, m.")
+    funnel: NonNegativeLength = default(
+        0.0, "How far the corners before the passage are cut off, m."
     )
 
     @property

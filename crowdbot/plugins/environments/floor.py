@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from crowdbot.plugin import Component, EnvironmentSpec, Place, PositiveLength, Rectangle
+from crowdbot.plugin import Component, EnvironmentSpec, Place, PositiveLength, Rectangle, default
 from crowdbot.plugins.environments.shapes import (
     BlockSpec,
     PillarSpec,
@@ -24,15 +24,14 @@ class FloorSpec(EnvironmentSpec):
 
     kind: Literal["floor"] = "floor"
     area: Rectangle = Field(description="The floor.")
-    border: Literal["walls", "open", "torus"] = Field(
-        default="walls",
-        description="At the sides: walls; nothing; or people come in again on the other side.",
+    border: Literal["walls", "open", "torus"] = default(
+        "walls", "At the sides: walls; nothing; or people come in again on the other side."
     )
-    walls: dict[str, WallSpec] = Field(default={}, description="Named straight walls.")
-    blocks: dict[str, BlockSpec] = Field(default={}, description="Named solid blocks.")
-    pillars: dict[str, PillarSpec] = Field(default={}, description="Named round pillars.")
-    wall_height: PositiveLength = Field(
-        default=2.5, description="Height of walls, blocks and pillars without their own, m."
+    walls: dict[str, WallSpec] = default({}, "Named straight walls.")
+    blocks: dict[str, BlockSpec] = default({}, "Named solid blocks.")
+    pillars: dict[str, PillarSpec] = default({}, "Named round pillars.")
+    wall_height: PositiveLength = default(
+        2.5, "Height of walls, blocks and pillars without their own, m."
     )
 
     @property

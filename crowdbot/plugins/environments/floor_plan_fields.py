@@ -6,7 +6,7 @@ from pathlib import PurePosixPath
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Le
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from crowdbot.plugin import (
     Angle,
@@ -15,6 +15,7 @@ from crowdbot.plugin import (
     NonNegativeLength,
     PositiveLength,
     Quantity,
+    default,
 )
 
 Format = Literal["auto", "geojson", "wkt", "dxf", "ros_map"]
@@ -37,66 +38,58 @@ class FloorPlanFields(EnvironmentSpec):
     """The fields of a floor plan in a document."""
 
     kind: Literal["floor_plan"] = "floor_plan"
-    file: Asset | None = Field(
-        default=None,
-        description="GeoJSON, WKT, DXF, or the `map.yaml` of an occupancy grid of ROS; this or "
-        "`wkt`.",
+    file: Asset | None = default(
+        None, "GeoJSON, WKT, DXF, or the `map.yaml` of an occupancy grid of ROS; this or `wkt`."
     )
-    image: Asset | None = Field(
-        default=None,
-        description="Image of an occupancy grid, PGM or PNG; without it the one that the "
+    image: Asset | None = default(
+        None,
+        "Image of an occupancy grid, PGM or PNG; without it the one that the "
         "`map.yaml` names, or the one of that name beside it where it names an absolute path.",
     )
-    wkt: str | None = Field(
-        default=None, description="The geometry as well-known text; this or `file`."
+    wkt: str | None = default(None, "The geometry as well-known text; this or `file`.")
+    format: Format = default("auto", "Of the file; `auto`: by the ending of its name.")
+    polygons: Literal["walkable", "obstacles"] = default(
+        "walkable", "What polygons are that do not say so themselves."
     )
-    format: Format = Field(
-        default="auto", description="Of the file; `auto`: by the ending of its name."
-    )
-    polygons: Literal["walkable", "obstacles"] = Field(
-        default="walkable", description="What polygons are that do not say so themselves."
-    )
-    unit: Literal["m", "cm", "mm", "ft", "in", "deg"] = Field(
-        default="m",
-        description="Of the numbers in GeoJSON, WKT and DXF; `deg`: longitude and latitude. DXF "
+    unit: Literal["m", "cm", "mm", "ft", "in", "deg"] = default(
+        "m",
+        "Of the numbers in GeoJSON, WKT and DXF; `deg`: longitude and latitude. DXF "
         "without it: what the drawing declares.",
     )
-    origin: tuple[_FarLength, _FarLength] = Field(
-        default=(0.0, 0.0),
-        strict=False,
-        description="Where the file's (0, 0) lies in the world, m; with `deg`, the longitude and "
+    origin: tuple[_FarLength, _FarLength] = default(
+        (0.0, 0.0),
+        "Where the file's (0, 0) lies in the world, m; with `deg`, the longitude and "
         "latitude of the world's (0, 0), as bare numbers.",
+        strict=False,
     )
-    rotation: Angle = Field(
-        default=0.0, description="The plan is turned about its (0, 0) by this angle, rad."
-    )
-    layers: dict[str, Layer] = Field(
-        default={},
-        exclude_if=lambda layers: not layers,
-        description="Meaning of the layers of DXF by patterns of their names, the first that fits; "
+    rotation: Angle = default(0.0, "The plan is turned about its (0, 0) by this angle, rad.")
+    layers: dict[str, Layer] = default(
+        {},
+        "Meaning of the layers of DXF by patterns of their names, the first that fits; "
         "layers that fit none are left out. Without it all layers are read: closed outlines as "
         "`polygons` says, lines as walls. Outside the hash while it is empty.",
+        exclude_if=lambda layers: not layers,
     )
-    unknown: Literal["solid", "free"] = Field(
-        default="solid", description="What cells of a grid are that are neither free nor occupied."
+    unknown: Literal["solid", "free"] = default(
+        "solid", "What cells of a grid are that are neither free nor occupied."
     )
-    level: str | int | float | None = Field(
-        default=None,
-        description="Storey to read, if the features of GeoJSON name several as `level`, `storey`, "
+    level: str | int | float | None = default(
+        None,
+        "Storey to read, if the features of GeoJSON name several as `level`, `storey`, "
         "`floor` and the like, or lie at different heights.",
     )
-    tolerance: NonNegativeLength | None = Field(
-        default=None,
-        description="Outlines are simplified by at most this, m; without it 0 in GeoJSON and WKT, "
+    tolerance: NonNegativeLength | None = default(
+        None,
+        "Outlines are simplified by at most this, m; without it 0 in GeoJSON and WKT, "
         "and half a cell in a grid, so that no cell's centre changes sides.",
     )
-    least_area: Annotated[float, Ge(0), Le(100)] | None = Field(
-        default=None,
-        description="Smaller pieces and holes are left out, with a warning, m^2; without it 0.02 "
+    least_area: Annotated[float, Ge(0), Le(100)] | None = default(
+        None,
+        "Smaller pieces and holes are left out, with a warning, m^2; without it 0.02 "
         "in GeoJSON and WKT, and 0 in a grid.",
     )
-    thickness: PositiveLength = Field(default=0.1, description="Of lines that are walls, m.")
-    wall_height: PositiveLength = Field(default=2.5, description="Height of the walls, m.")
+    thickness: PositiveLength = default(0.1, "Of lines that are walls, m.")
+    wall_height: PositiveLength = default(2.5, "Height of the walls, m.")
 
     @model_validator(mode="after")
     def _one_source(self) -> FloorPlanFields:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
-
 from crowdbot.plugin import (
     Component,
     NonNegativeLength,
@@ -14,6 +12,7 @@ from crowdbot.plugin import (
     PositiveLength,
     Rectangle,
     Solid,
+    default,
 )
 from crowdbot.plugins.environments.pillar_sets import PillarFieldSpec, PillarGridSpec, all_pillars
 from crowdbot.plugins.environments.shapes import (
@@ -33,15 +32,15 @@ GATE, LOW_WALL = (0.3, 1.1), 0.3
 class _HallSpec(WalkwaySpec):
     """A rectangular hall around the origin; obstacles in it have names."""
 
-    length: PositiveLength = Field(default=30.0, description="Along x, m.")
-    width: PositiveLength = Field(default=20.0, description="Along y, m.")
-    openings: dict[str, OpeningSpec] = Field(
-        default={}, description="Openings in the outer walls, each a portal of the same name."
+    length: PositiveLength = default(30.0, "Along x, m.")
+    width: PositiveLength = default(20.0, "Along y, m.")
+    openings: dict[str, OpeningSpec] = default(
+        {}, "Openings in the outer walls, each a portal of the same name."
     )
-    blocks: dict[str, BlockSpec] = Field(default={}, description="Named solid blocks.")
-    pillars: dict[str, PillarSpec] = Field(default={}, description="Named round pillars.")
-    pillar_grid: PillarGridSpec | None = Field(default=None, description="Pillars in a grid.")
-    pillar_field: PillarFieldSpec | None = Field(default=None, description="Pillars at random.")
+    blocks: dict[str, BlockSpec] = default({}, "Named solid blocks.")
+    pillars: dict[str, PillarSpec] = default({}, "Named round pillars.")
+    pillar_grid: PillarGridSpec | None = default(None, "Pillars in a grid.")
+    pillar_field: PillarFieldSpec | None = default(None, "Pillars at random.")
 
     @property
     def area(self) -> Rectangle:
@@ -87,15 +86,14 @@ class ShedSpec(_HallSpec):
     """
 
     kind: Literal["shed"] = "shed"
-    length: PositiveLength = Field(default=40.0, description="Along x, m.")
-    width: PositiveLength = Field(default=24.0, description="Along y, m.")
-    wall_height: PositiveLength = Field(default=6.0, description="Of the outer walls, m.")
-    gates: dict[str, WallSpec] | None = Field(
-        default=None,
-        description="Raised barriers, by default from 0.3 m to 1.1 m; without this field two.",
+    length: PositiveLength = default(40.0, "Along x, m.")
+    width: PositiveLength = default(24.0, "Along y, m.")
+    wall_height: PositiveLength = default(6.0, "Of the outer walls, m.")
+    gates: dict[str, WallSpec] | None = default(
+        None, "Raised barriers, by default from 0.3 m to 1.1 m; without this field two."
     )
-    low_walls: dict[str, WallSpec] | None = Field(
-        default=None, description="Low walls, by default 0.3 m high; without this field two."
+    low_walls: dict[str, WallSpec] | None = default(
+        None, "Low walls, by default 0.3 m high; without this field two."
     )
 
     def solids(self) -> tuple[Solid, ...]:
@@ -145,19 +143,17 @@ class PlazaSpec(_HallSpec):
     """An open square with a fountain, trees and streets that lead into it."""
 
     kind: Literal["plaza"] = "plaza"
-    fountain: NonNegativeLength = Field(
-        default=2.5, description="Radius of the fountain in the middle, m; 0: none."
-    )
-    fountain_height: PositiveLength = Field(default=0.6, description="Of its rim, m.")
-    wall_height: PositiveLength = Field(default=6.0, description="Of houses and trees, m.")
-    openings: dict[str, OpeningSpec] = Field(
-        default={
+    fountain: NonNegativeLength = default(2.5, "Radius of the fountain in the middle, m; 0: none.")
+    fountain_height: PositiveLength = default(0.6, "Of its rim, m.")
+    wall_height: PositiveLength = default(6.0, "Of houses and trees, m.")
+    openings: dict[str, OpeningSpec] = default(
+        {
             "south": OpeningSpec(side="south", at=0.0, width=4.0),
             "east": OpeningSpec(side="east", at=0.0, width=4.0),
             "north": OpeningSpec(side="north", at=0.0, width=4.0),
             "west": OpeningSpec(side="west", at=0.0, width=4.0),
         },
-        description="Streets, each a portal of the same name.",
+        "Streets, each a portal of the same name.",
     )
 
     def columns(self) -> tuple[Pillar, ...]:

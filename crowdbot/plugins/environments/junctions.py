@@ -6,7 +6,6 @@ import math
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Le
-from pydantic import Field
 
 from crowdbot.plugin import (
     Component,
@@ -15,6 +14,7 @@ from crowdbot.plugin import (
     PositiveLength,
     Quantity,
     Rectangle,
+    default,
     outlines,
 )
 from crowdbot.plugins.environments.walkways import (
@@ -32,15 +32,13 @@ class CornerSpec(WalkwaySpec):
     """A corridor along x that turns left; origin where the middle lines meet."""
 
     kind: Literal["corner"] = "corner"
-    length: PositiveLength = Field(default=12.0, description="From the start to the turn, m.")
-    beyond: PositiveLength = Field(default=12.0, description="From the turn to the end, m.")
-    width: PositiveLength = Field(default=3.0, description="Width, m.")
-    angle: Annotated[float, Ge(math.radians(20)), Le(math.radians(150)), Quantity("angle")] = Field(
-        default=_RIGHT, description="Of the turn, 20 to 150 deg, rad."
+    length: PositiveLength = default(12.0, "From the start to the turn, m.")
+    beyond: PositiveLength = default(12.0, "From the turn to the end, m.")
+    width: PositiveLength = default(3.0, "Width, m.")
+    angle: Annotated[float, Ge(math.radians(20)), Le(math.radians(150)), Quantity("angle")] = (
+        default(_RIGHT, "Of the turn, 20 to 150 deg, rad.")
     )
-    corner_radius: NonNegativeLength = Field(
-        default=0.0, description="Of the inner corner, m; 0: square."
-    )
+    corner_radius: NonNegativeLength = default(0.0, "Of the inner corner, m; 0: square.")
 
     def place(self) -> Place:
         """Return the place; people walk through both ends."""
@@ -106,10 +104,10 @@ class TJunctionSpec(WalkwaySpec):
     """A corridor along x, and another that meets it from below; origin where they meet."""
 
     kind: Literal["t_junction"] = "t_junction"
-    length: PositiveLength = Field(default=24.0, description="Of the corridor along x, m.")
-    width: PositiveLength = Field(default=4.0, description="Of the corridor along x, m.")
-    stem_length: PositiveLength = Field(default=12.0, description="Of the other one, m.")
-    stem_width: PositiveLength = Field(default=3.0, description="Of the other one, m.")
+    length: PositiveLength = default(24.0, "Of the corridor along x, m.")
+    width: PositiveLength = default(4.0, "Of the corridor along x, m.")
+    stem_length: PositiveLength = default(12.0, "Of the other one, m.")
+    stem_width: PositiveLength = default(3.0, "Of the other one, m.")
 
     def place(self) -> Place:
         """Return the place; people walk through the three ends."""

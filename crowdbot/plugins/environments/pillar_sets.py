@@ -11,7 +11,15 @@ from typing import Annotated
 from annotated_types import Ge, Le
 from pydantic import Field
 
-from crowdbot.plugin import NonNegativeLength, Pillar, PositiveLength, Rectangle, Spec, outlines
+from crowdbot.plugin import (
+    NonNegativeLength,
+    Pillar,
+    PositiveLength,
+    Rectangle,
+    Spec,
+    default,
+    outlines,
+)
 from crowdbot.plugins.environments.shapes import PillarSpec
 
 Count = Annotated[int, Ge(1), Le(1000)]
@@ -24,10 +32,8 @@ class PillarGridSpec(Spec):
 
     columns: Count = Field(description="How many along x.")
     rows: Count = Field(description="How many along y.")
-    radius: PositiveLength = Field(default=0.3, description="Radius, m.")
-    area: Rectangle | None = Field(
-        default=None, description="Where they are; without it the whole floor."
-    )
+    radius: PositiveLength = default(0.3, "Radius, m.")
+    area: Rectangle | None = default(None, "Where they are; without it the whole floor.")
 
     def pillars(self, floor: Rectangle, top: float) -> tuple[Pillar, ...]:
         """Return the pillars, spread evenly: along each side all gaps are equal."""
@@ -42,20 +48,16 @@ class PillarFieldSpec(Spec):
     """Pillars at random places with minimum gaps; the same seed gives the same pillars."""
 
     count: Count = Field(description="How many.")
-    seed: Annotated[int, Ge(0), Le(2**63 - 1)] = Field(default=0, description="Draws them.")
-    radius: PositiveLength = Field(default=0.3, description="Smallest radius, m.")
-    largest_radius: PositiveLength | None = Field(
-        default=None, description="Largest radius, m; without it all have the smallest."
+    seed: Annotated[int, Ge(0), Le(2**63 - 1)] = default(0, "Draws them.")
+    radius: PositiveLength = default(0.3, "Smallest radius, m.")
+    largest_radius: PositiveLength | None = default(
+        None, "Largest radius, m; without it all have the smallest."
     )
-    gap: NonNegativeLength = Field(
-        default=1.5, description="Least gap between the surfaces of two of them, m."
+    gap: NonNegativeLength = default(1.5, "Least gap between the surfaces of two of them, m.")
+    wall_gap: NonNegativeLength = default(
+        1.0, "Least gap between one of them and the area's sides, m."
     )
-    wall_gap: NonNegativeLength = Field(
-        default=1.0, description="Least gap between one of them and the area's sides, m."
-    )
-    area: Rectangle | None = Field(
-        default=None, description="Where they are; without it the whole floor."
-    )
+    area: Rectangle | None = default(None, "Where they are; without it the whole floor.")
 
     def pillars(self, floor: Rectangle, top: float) -> tuple[Pillar, ...]:
         """Return the pillars, placed one by one at the first free random position.

@@ -9,7 +9,17 @@ from typing import Annotated
 from annotated_types import Len
 from pydantic import Field, field_validator, model_validator
 
-from crowdbot.plugin import Face, Heights, Length, Pillar, PositiveLength, Solid, Spec, outlines
+from crowdbot.plugin import (
+    Face,
+    Heights,
+    Length,
+    Pillar,
+    PositiveLength,
+    Solid,
+    Spec,
+    default,
+    outlines,
+)
 
 Point = Annotated[tuple[Length, Length], Field(strict=False)]
 Corners = Annotated[tuple[Point, ...], Len(3, 4096), Field(strict=False)]
@@ -21,15 +31,15 @@ _LEAST_AREA = 1e-9
 class UprightSpec(Spec):
     """An obstacle between two heights."""
 
-    base: Length = Field(
-        default=0.0,
+    base: Length = default(
+        0.0,
+        "Its lower edge above the floor, m: 0 for what stands, more for what hangs.",
         exclude_if=lambda value: value == 0.0,
-        description="Its lower edge above the floor, m: 0 for what stands, more for what hangs.",
     )
-    height: PositiveLength | None = Field(
-        default=None,
+    height: PositiveLength | None = default(
+        None,
+        "Its upper edge above the floor, m; without it `wall_height`.",
         exclude_if=lambda value: value is None,
-        description="Its upper edge above the floor, m; without it `wall_height`.",
     )
 
     def heights(self, usual: float) -> Heights:
@@ -54,7 +64,7 @@ class WallSpec(UprightSpec):
 
     start: Point = Field(description="One end, x and y, m.")
     end: Point = Field(description="The other end, x and y, m.")
-    thickness: PositiveLength = Field(default=0.1, description="Thickness, m.")
+    thickness: PositiveLength = default(0.1, "Thickness, m.")
 
     @model_validator(mode="after")
     def _long(self) -> WallSpec:
@@ -76,11 +86,11 @@ class BlockSpec(UprightSpec):
         strict=False,
         description="Corners of the outline, in either sense, convex or not, m.",
     )
-    holes: tuple[Corners, ...] = Field(
-        default=(),
+    holes: tuple[Corners, ...] = default(
+        (),
+        "Outlines of what is free within it, such as courtyards, m.",
         strict=False,
         exclude_if=lambda value: not value,
-        description="Outlines of what is free within it, such as courtyards, m.",
     )
 
     @field_validator("corners")

@@ -17,6 +17,7 @@ from crowdbot.plugin import (
     Rectangle,
     Solid,
     Spec,
+    default,
 )
 from crowdbot.plugins.environments.shapes import strip
 from crowdbot.plugins.environments.walkways import OpeningSpec, WalkwaySpec, box, hall
@@ -39,14 +40,14 @@ class FurnitureSpec(Spec):
     )
     x: Length = Field(description="Its middle, m.")
     y: Length = Field(description="Its middle, m.")
-    heading: Angle = Field(default=0.0, description="Of its long side, from x, rad.")
+    heading: Angle = default(0.0, "Of its long side, from x, rad.")
 
 
 class CrossingSpec(Spec):
     """A crossing, where kerbs are lowered so that wheels can pass."""
 
     at: Length = Field(description="Its middle along the street, m.")
-    width: PositiveLength = Field(default=3.0, description="Along the street, m.")
+    width: PositiveLength = default(3.0, "Along the street, m.")
 
 
 class StreetSpec(WalkwaySpec):
@@ -58,26 +59,26 @@ class StreetSpec(WalkwaySpec):
     """
 
     kind: Literal["street"] = "street"
-    length: PositiveLength = Field(default=50.0, description="Along x, m.")
-    roadway: PositiveLength = Field(default=6.0, description="Width between the kerbs, m.")
-    pavement: PositiveLength = Field(default=3.0, description="Width of each pavement, m.")
-    kerbs: Literal["step", "flush"] = Field(
-        default="step",
-        description="step: people step over them, and they stop "
+    length: PositiveLength = default(50.0, "Along x, m.")
+    roadway: PositiveLength = default(6.0, "Width between the kerbs, m.")
+    pavement: PositiveLength = default(3.0, "Width of each pavement, m.")
+    kerbs: Literal["step", "flush"] = default(
+        "step",
+        "step: people step over them, and they stop "
         "wheels except at crossings; flush: they stop no one.",
     )
-    kerb_height: PositiveLength = Field(default=0.12, description="Of a step, m.")
-    crossings: dict[str, CrossingSpec] = Field(
-        default={"middle": CrossingSpec(at=0.0)}, description="Named crossings."
+    kerb_height: PositiveLength = default(0.12, "Of a step, m.")
+    crossings: dict[str, CrossingSpec] = default(
+        {"middle": CrossingSpec(at=0.0)}, "Named crossings."
     )
-    doors: dict[str, OpeningSpec] = Field(
-        default={}, description="Doors in the façades, each a portal of the same name."
+    doors: dict[str, OpeningSpec] = default(
+        {}, "Doors in the façades, each a portal of the same name."
     )
-    openings: dict[str, OpeningSpec] = Field(
-        default={}, description="Side streets and gateways, each a portal of the same name."
+    openings: dict[str, OpeningSpec] = default(
+        {}, "Side streets and gateways, each a portal of the same name."
     )
-    furniture: dict[str, FurnitureSpec] = Field(default={}, description="Named furniture.")
-    wall_height: PositiveLength = Field(default=6.0, description="Height of the façades, m.")
+    furniture: dict[str, FurnitureSpec] = default({}, "Named furniture.")
+    wall_height: PositiveLength = default(6.0, "Height of the façades, m.")
 
     @property
     def area(self) -> Rectangle:

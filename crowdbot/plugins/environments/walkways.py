@@ -9,7 +9,16 @@ from typing import Literal
 
 from pydantic import Field, PrivateAttr, model_validator
 
-from crowdbot.plugin import EnvironmentSpec, Face, Length, PositiveLength, Rectangle, Spec, outlines
+from crowdbot.plugin import (
+    EnvironmentSpec,
+    Face,
+    Length,
+    PositiveLength,
+    Rectangle,
+    Spec,
+    default,
+    outlines,
+)
 
 #: Distance by which portals and the walls beside them extend beyond an end, m.
 PORTAL_DEPTH = 1.0
@@ -21,7 +30,7 @@ Side = Literal["south", "east", "north", "west"]
 class WalkwaySpec(EnvironmentSpec):
     """A place with its own zones and portals; those of the document are added."""
 
-    wall_height: PositiveLength = Field(default=2.5, description="Height of the walls, m.")
+    wall_height: PositiveLength = default(2.5, "Height of the walls, m.")
 
     _checked: bool = PrivateAttr(default=False)
 
@@ -56,7 +65,7 @@ class OpeningSpec(Spec):
 
     side: Side = Field(description="The wall it is in: `south` is the one at the least y.")
     at: Length = Field(description="Its middle along the wall: x, or y in `west` and `east`, m.")
-    width: PositiveLength = Field(default=2.0, description="Width, m.")
+    width: PositiveLength = default(2.0, "Width, m.")
 
 
 def box(x0: float, x1: float, y0: float, y1: float) -> Rectangle:

@@ -6,9 +6,8 @@ from functools import partial
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from pydantic import Field
 
-from crowdbot.plugin import MetricSpec, declare_metric
+from crowdbot.plugin import MetricSpec, declare_metric, default
 from crowdbot.plugins.metrics.parameters import (
     ContactTol,
     DemandRoom,
@@ -25,23 +24,17 @@ class AcceptanceSpec(MetricSpec):
     """Opinion of people on the drive, estimated: 1 is fine, 0 is unacceptable."""
 
     kind: Literal["acceptance"] = "acceptance"
-    not_arrived: _Weight = Field(default=1.0, description="Weight of not reaching the goal.")
-    touched: _Weight = Field(default=0.3, description="Weight of touching people.")
-    wall: _Weight = Field(default=0.3, description="Weight of touching walls.")
-    near: _Weight = Field(
-        default=0.3, description="Weight of 1 minus the rating of the smallest distance."
-    )
-    crowding: _Weight = Field(
-        default=1.5, description="Weight of the share of time with a person within 0.25 m."
-    )
-    fast: _Weight = Field(
-        default=2.0,
-        description="Weight of the largest product of the robot's speed and what is missing to "
+    not_arrived: _Weight = default(1.0, "Weight of not reaching the goal.")
+    touched: _Weight = default(0.3, "Weight of touching people.")
+    wall: _Weight = default(0.3, "Weight of touching walls.")
+    near: _Weight = default(0.3, "Weight of 1 minus the rating of the smallest distance.")
+    crowding: _Weight = default(1.5, "Weight of the share of time with a person within 0.25 m.")
+    fast: _Weight = default(
+        2.0,
+        "Weight of the largest product of the robot's speed and what is missing to "
         "0.5 m of room, s/m².",
     )
-    forcing: _Weight = Field(
-        default=0.3, description="Weight of the largest demanded evasion, relative to 3 m/s²."
-    )
+    forcing: _Weight = default(0.3, "Weight of the largest demanded evasion, relative to 3 m/s².")
     demand_time: DemandTime
     demand_room: DemandRoom
     contact_tol: ContactTol

@@ -5,9 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Literal
 
-from pydantic import Field
-
-from crowdbot.plugin import MetricSpec, PositiveDuration, declare_metric
+from crowdbot.plugin import MetricSpec, PositiveDuration, declare_metric, default
 from crowdbot.plugins.metrics.parameters import Intimate, JumpSpeed, Social
 
 #: Two metrics change where a person passes a portal.
@@ -98,8 +96,8 @@ class PersonComfortSpec(MetricSpec):
     kind: Literal["person_comfort"] = "person_comfort"
     intimate: Intimate
     social: Social
-    rush_time: PositiveDuration = Field(
-        default=1.0, description="A robot that would touch the person sooner rushes, s."
+    rush_time: PositiveDuration = default(
+        1.0, "A robot that would touch the person sooner rushes, s."
     )
     jump_speed: JumpSpeed
 

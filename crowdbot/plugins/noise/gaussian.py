@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from crowdbot.plugin import Component, Length, NoiseSpec, NonNegativeLength
+from crowdbot.plugin import Component, Length, NoiseSpec, NonNegativeLength, default
 
 
 class GaussianSpec(NoiseSpec):
@@ -14,7 +14,7 @@ class GaussianSpec(NoiseSpec):
 
     kind: Literal["gaussian"] = "gaussian"
     std: NonNegativeLength = Field(description="Standard deviation, m.")
-    mean: Length = Field(default=0.0, description="Mean, m.")
+    mean: Length = default(0.0, "Mean, m.")
 
 
 GAUSSIAN = Component(

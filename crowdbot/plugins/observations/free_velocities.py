@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Gt, Le
-from pydantic import Field
 
 from crowdbot.plugin import (
     Component,
@@ -14,6 +13,7 @@ from crowdbot.plugin import (
     PositiveDuration,
     PositiveLength,
     PositiveSpeed,
+    default,
 )
 
 Directions = Annotated[int, Ge(3), Le(181)]
@@ -39,19 +39,19 @@ class FreeVelocitiesSpec(ObservationSpec):
 
     kind: Literal["free_velocities"] = "free_velocities"
     tracks: ClassVar[bool] = True
-    sensor: str = Field(default="lidar", description="Name or category of the lidar.")
-    others: tuple[str, ...] = Field(default=(), strict=False, description="Further lidars.")
-    directions: Directions = Field(default=17, description="Directions of the fan.")
-    widest: HalfTurn = Field(default=2.0, description="Angle of the outermost directions, rad.")
-    speeds: Speeds = Field(default=2, description="Speeds, evenly up to the largest one.")
-    horizon: PositiveDuration = Field(default=4.0, description="Later contacts do not count, s.")
-    room: PositiveLength = Field(default=0.8, description="A larger gap is no better, m.")
-    sectors: Sectors = Field(default=12, description="Sectors of equal width around the robot.")
-    people: People = Field(default=8, description="How many people are listed, at most.")
-    person_radius: NonNegativeLength = Field(default=0.33, description="Radius of people, m.")
-    range: PositiveLength = Field(default=6.0, description="What is farther is not seen, m.")
-    fastest: PositiveSpeed = Field(default=3.0, description="Faster people are this fast, m/s.")
-    goal_range: PositiveLength = Field(default=10.0, description="Farther goals are this far, m.")
+    sensor: str = default("lidar", "Name or category of the lidar.")
+    others: tuple[str, ...] = default((), "Further lidars.", strict=False)
+    directions: Directions = default(17, "Directions of the fan.")
+    widest: HalfTurn = default(2.0, "Angle of the outermost directions, rad.")
+    speeds: Speeds = default(2, "Speeds, evenly up to the largest one.")
+    horizon: PositiveDuration = default(4.0, "Later contacts do not count, s.")
+    room: PositiveLength = default(0.8, "A larger gap is no better, m.")
+    sectors: Sectors = default(12, "Sectors of equal width around the robot.")
+    people: People = default(8, "How many people are listed, at most.")
+    person_radius: NonNegativeLength = default(0.33, "Radius of people, m.")
+    range: PositiveLength = default(6.0, "What is farther is not seen, m.")
+    fastest: PositiveSpeed = default(3.0, "Faster people are this fast, m/s.")
+    goal_range: PositiveLength = default(10.0, "Farther goals are this far, m.")
 
     @property
     def needs(self) -> tuple[str, ...]:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Le
-from pydantic import Field
 
-from crowdbot.plugin import Component, ObservationSpec, PositiveLength
+from crowdbot.plugin import Component, ObservationSpec, PositiveLength, default
 
 Beams = Annotated[int, Ge(4), Le(4096)]
 Scans = Annotated[int, Ge(1), Le(64)]
@@ -25,15 +24,15 @@ class LidarStackSpec(ObservationSpec):
     """
 
     kind: Literal["lidar_stack"] = "lidar_stack"
-    sensor: str = Field(default="lidar", description="Name or category of the lidar.")
-    others: tuple[str, ...] = Field(
-        default=(), strict=False, description="Further lidars, whose sectors follow in a scan."
+    sensor: str = default("lidar", "Name or category of the lidar.")
+    others: tuple[str, ...] = default(
+        (), "Further lidars, whose sectors follow in a scan.", strict=False
     )
-    sectors: Beams = Field(default=36, description="Sectors of equal width, which keep a minimum.")
-    scans: Scans = Field(default=3, description="How many scans, the latest first.")
-    stride: Stride = Field(default=1, description="Steps of the planner between two scans.")
-    range: PositiveLength = Field(default=6.0, description="Farther returns count as free, m.")
-    goal_range: PositiveLength = Field(default=10.0, description="Farther goals are this far, m.")
+    sectors: Beams = default(36, "Sectors of equal width, which keep a minimum.")
+    scans: Scans = default(3, "How many scans, the latest first.")
+    stride: Stride = default(1, "Steps of the planner between two scans.")
+    range: PositiveLength = default(6.0, "Farther returns count as free, m.")
+    goal_range: PositiveLength = default(10.0, "Farther goals are this far, m.")
 
     @property
     def needs(self) -> tuple[str, ...]:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Le
-from pydantic import Field
 
-from crowdbot.plugin import Component, ObservationSpec, PositiveLength
+from crowdbot.plugin import Component, ObservationSpec, PositiveLength, default
 
 Cells = Annotated[int, Ge(4), Le(512)]
 
@@ -20,10 +19,10 @@ class OccupancySpec(ObservationSpec):
     """
 
     kind: Literal["occupancy"] = "occupancy"
-    sensor: str = Field(default="lidar", description="Name or category of the lidar.")
-    cells: Cells = Field(default=32, description="Cells along each side.")
-    side: PositiveLength = Field(default=8.0, description="Length of a side, m.")
-    goal_range: PositiveLength = Field(default=10.0, description="Farther goals are this far, m.")
+    sensor: str = default("lidar", "Name or category of the lidar.")
+    cells: Cells = default(32, "Cells along each side.")
+    side: PositiveLength = default(8.0, "Length of a side, m.")
+    goal_range: PositiveLength = default(10.0, "Farther goals are this far, m.")
 
     @property
     def needs(self) -> tuple[str, ...]:

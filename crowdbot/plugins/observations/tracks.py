@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Le
-from pydantic import Field
 
-from crowdbot.plugin import Component, ObservationSpec, PositiveLength, PositiveSpeed
+from crowdbot.plugin import Component, ObservationSpec, PositiveLength, PositiveSpeed, default
 
 People = Annotated[int, Ge(1), Le(256)]
 
@@ -22,10 +21,10 @@ class TracksSpec(ObservationSpec):
 
     kind: Literal["tracks"] = "tracks"
     privileged: ClassVar[bool] = True
-    people: People = Field(default=10, description="How many people, at most.")
-    range: PositiveLength = Field(default=6.0, description="People farther off are not seen, m.")
-    fastest: PositiveSpeed = Field(default=3.0, description="Faster people are this fast, m/s.")
-    goal_range: PositiveLength = Field(default=10.0, description="Farther goals are this far, m.")
+    people: People = default(10, "How many people, at most.")
+    range: PositiveLength = default(6.0, "People farther off are not seen, m.")
+    fastest: PositiveSpeed = default(3.0, "Faster people are this fast, m/s.")
+    goal_range: PositiveLength = default(10.0, "Farther goals are this far, m.")
 
 
 TRACKS = Component(spec=TracksSpec, summary="nearest people in the robot's frame, as they are")

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Le
-from pydantic import Field
 
-from crowdbot.plugin import Component, ObservationSpec, PositiveLength, PositiveSpeed
+from crowdbot.plugin import Component, ObservationSpec, PositiveLength, PositiveSpeed, default
 
 Everyone = Annotated[int, Ge(1), Le(4096)]
 
@@ -22,9 +21,9 @@ class TruthSpec(ObservationSpec):
 
     kind: Literal["truth"] = "truth"
     privileged: ClassVar[bool] = True
-    people: Everyone = Field(default=100, description="Room for this many; the rest is left out.")
-    extent: PositiveLength = Field(default=50.0, description="Largest coordinate, m.")
-    fastest: PositiveSpeed = Field(default=3.0, description="Faster people are this fast, m/s.")
+    people: Everyone = default(100, "Room for this many; the rest is left out.")
+    extent: PositiveLength = default(50.0, "Largest coordinate, m.")
+    fastest: PositiveSpeed = default(3.0, "Faster people are this fast, m/s.")
 
 
 TRUTH = Component(spec=TruthSpec, summary="everything, in the world's frame")

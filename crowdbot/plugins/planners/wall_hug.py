@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Gt, Le
-from pydantic import Field
 
 from crowdbot.plugin import (
     Component,
@@ -15,6 +14,7 @@ from crowdbot.plugin import (
     PositiveAngle,
     PositiveFrequency,
     PositiveLength,
+    default,
 )
 
 
@@ -28,25 +28,21 @@ class WallHugSpec(PlannerSpec):
     needs: ClassVar[tuple[str, ...]] = ()
 
     kind: Literal["wall_hug"] = "wall_hug"
-    side: Literal["left", "right"] = Field(
-        default="left", description="Which border, as seen on the way from start to goal."
+    side: Literal["left", "right"] = default(
+        "left", "Which border, as seen on the way from start to goal."
     )
-    gap: NonNegativeLength | None = Field(
-        default=None,
-        description="From the border to the centre of the robot, m; unset: 0.3 m, or half of the "
+    gap: NonNegativeLength | None = default(
+        None,
+        "From the border to the centre of the robot, m; unset: 0.3 m, or half of the "
         "robot's width and 0.1 m where that is more.",
     )
-    speed: Annotated[float, Gt(0), Le(1)] = Field(
-        default=1.0, description="Cruising speed as a fraction of the robot's largest."
+    speed: Annotated[float, Gt(0), Le(1)] = default(
+        1.0, "Cruising speed as a fraction of the robot's largest."
     )
-    look_ahead: PositiveLength = Field(
-        default=1.0, description="It aims at the point of its line so far ahead, m."
-    )
-    heading_gain: PositiveFrequency = Field(
-        default=2.0, description="Yaw rate per heading error, 1/s."
-    )
-    turn_in_place: PositiveAngle = Field(
-        default=0.785, description="Heading error above which the robot turns on the spot, rad."
+    look_ahead: PositiveLength = default(1.0, "It aims at the point of its line so far ahead, m.")
+    heading_gain: PositiveFrequency = default(2.0, "Yaw rate per heading error, 1/s.")
+    turn_in_place: PositiveAngle = default(
+        0.785, "Heading error above which the robot turns on the spot, rad."
     )
 
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
-
-from crowdbot.plugin import Component
+from crowdbot.plugin import Component, default
 from crowdbot.plugins.rewards.progress import Amount, ProgressSpec
 
 
@@ -17,7 +15,7 @@ class BurdenSpec(ProgressSpec):
     """
 
     kind: Literal["burden"] = "burden"  # type: ignore[assignment]
-    work: Amount = Field(default=0.01, description="Taken off for each joule, 1/J.")
+    work: Amount = default(0.01, "Taken off for each joule, 1/J.")
 
 
 BURDEN = Component(spec=BurdenSpec, summary="progress that demands little of people")

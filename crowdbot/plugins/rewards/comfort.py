@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
-
-from crowdbot.plugin import Component
+from crowdbot.plugin import Component, default
 from crowdbot.plugins.rewards.progress import Amount, ProgressSpec
 
 
@@ -18,9 +16,7 @@ class ComfortSpec(ProgressSpec):
     """
 
     kind: Literal["comfort"] = "comfort"  # type: ignore[assignment]
-    advance: Amount = Field(
-        default=1.0, description="Taken off for each metre towards people without room, 1/m."
-    )
+    advance: Amount = default(1.0, "Taken off for each metre towards people without room, 1/m.")
 
 
 COMFORT = Component(spec=ComfortSpec, summary="progress that leaves people their room")

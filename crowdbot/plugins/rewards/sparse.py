@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Le
-from pydantic import Field
 
-from crowdbot.plugin import Component, NonNegativeLength, RewardSpec
+from crowdbot.plugin import Component, NonNegativeLength, RewardSpec, default
 
 Amount = Annotated[float, Ge(0.0), Le(1e6)]
 
@@ -22,13 +21,11 @@ class SparseSpec(RewardSpec):
     """
 
     kind: Literal["sparse"] = "sparse"
-    arrival: Amount = Field(default=1.0, description="For arriving, a number.")
-    contact: Amount = Field(
-        default=0.25, description="Taken off for a step with contact, a number."
-    )
-    near: NonNegativeLength = Field(default=0.2, description="Gap to people without cost, m.")
-    nearness: Amount = Field(default=0.1, description="Taken off for any smaller gap, a number.")
-    slope: Amount = Field(default=0.5, description="Taken off besides, for each metre of gap, 1/m.")
+    arrival: Amount = default(1.0, "For arriving, a number.")
+    contact: Amount = default(0.25, "Taken off for a step with contact, a number.")
+    near: NonNegativeLength = default(0.2, "Gap to people without cost, m.")
+    nearness: Amount = default(0.1, "Taken off for any smaller gap, a number.")
+    slope: Amount = default(0.5, "Taken off besides, for each metre of gap, 1/m.")
 
 
 SPARSE = Component(spec=SparseSpec, summary="arrival, contact and little room, as in CADRL")

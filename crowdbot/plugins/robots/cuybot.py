@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
-from pydantic import Field
-
-from crowdbot.plugin import Component, PositiveForce, PositiveStiffness
+from crowdbot.plugin import Component, PositiveForce, PositiveStiffness, default
 from crowdbot.plugins.robots.limits import (
     LimitedRobotSpec,
     Mass,
@@ -31,11 +29,9 @@ class CuybotSpec(LimitedRobotSpec):
     max_acceleration: MaxAcceleration = 1.0
     max_yaw_acceleration: MaxYawAcceleration = 2.0
     mass: Mass = 100.0
-    yield_force: PositiveForce = Field(
-        default=120.0, description="Largest force of its drive, in any direction, N."
-    )
-    skin_stiffness: PositiveStiffness = Field(
-        default=10000.0, description="Of the skin, in series with the person's body, N/m."
+    yield_force: PositiveForce = default(120.0, "Largest force of its drive, in any direction, N.")
+    skin_stiffness: PositiveStiffness = default(
+        10000.0, "Of the skin, in series with the person's body, N/m."
     )
 
     @property

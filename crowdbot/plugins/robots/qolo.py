@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
-
-from crowdbot.plugin import Component, PositiveLength
+from crowdbot.plugin import Component, PositiveLength, default
 from crowdbot.plugins.robots.limits import (
     LimitedRobotSpec,
     Mass,
@@ -30,9 +28,7 @@ class QoloSpec(LimitedRobotSpec):
     max_acceleration: MaxAcceleration = 1.5
     max_yaw_acceleration: MaxYawAcceleration = 4.5
     mass: Mass = 120.0
-    radius: PositiveLength = Field(
-        default=0.4, le=0.5, ge=0.3, description="Of the capsule that is its outline, m."
-    )
+    radius: PositiveLength = default(0.4, "Of the capsule that is its outline, m.", le=0.5, ge=0.3)
 
     @property
     def half_width(self) -> float:

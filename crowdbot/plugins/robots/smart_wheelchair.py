@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
-
-from crowdbot.plugin import Component, PositiveLength
+from crowdbot.plugin import Component, PositiveLength, default
 from crowdbot.plugins.robots.limits import (
     LimitedRobotSpec,
     Mass,
@@ -31,10 +29,8 @@ class SmartWheelchairSpec(LimitedRobotSpec):
     max_acceleration: MaxAcceleration = 1.0
     max_yaw_acceleration: MaxYawAcceleration = 2.0
     mass: Mass = 205.0
-    length: PositiveLength = Field(
-        default=1.1, ge=0.9, le=1.3, description="Foot rests included, m."
-    )
-    width: PositiveLength = Field(default=0.61, ge=0.6, le=0.75, description="m.")
+    length: PositiveLength = default(1.1, "Foot rests included, m.", ge=0.9, le=1.3)
+    width: PositiveLength = default(0.61, "m.", ge=0.6, le=0.75)
 
     @property
     def half_width(self) -> float:

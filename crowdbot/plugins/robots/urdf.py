@@ -24,6 +24,7 @@ from crowdbot.plugin import (
     PositiveSpeed,
     RobotSpec,
     Spec,
+    default,
 )
 from crowdbot.plugins.robots.urdf_names import urdf_names
 
@@ -44,14 +45,14 @@ class BoxBody(Spec):
     length: PositiveLength = Field(description="Along x, m.")
     width: PositiveLength = Field(description="Along y, m.")
     height: PositiveLength = Field(description="Of the whole robot, m.")
-    x: Length = Field(default=0.0, description="Its centre ahead of the base, m.")
+    x: Length = default(0.0, "Its centre ahead of the base, m.")
 
 
 class Caster(Spec):
     """A ball that slides on the floor."""
 
     x: Length = Field(description="From the base, m.")
-    y: Length = Field(default=0.0, description="From the base, m.")
+    y: Length = default(0.0, "From the base, m.")
     radius: PositiveLength = Field(description="m.")
 
 
@@ -59,33 +60,29 @@ class UrdfFields(RobotSpec):
     """Fields of robots with a URDF, on two driven wheels or holonomic."""
 
     file: Asset = Field(description="The URDF; joints that are not wheels are held.")
-    base: str = Field(
-        default="base_link", description="Link on which sensors are mounted: x ahead, z up."
-    )
-    positions: dict[str, float] = Field(
-        default={},
-        exclude_if=lambda value: not value,
-        description="Where joints are held, such as those of an arm: rad, of prismatic ones m; "
+    base: str = default("base_link", "Link on which sensors are mounted: x ahead, z up.")
+    positions: dict[str, float] = default(
+        {},
+        "Where joints are held, such as those of an arm: rad, of prismatic ones m; "
         "the others are held at zero.",
+        exclude_if=lambda value: not value,
     )
-    disc: DiscBody | None = Field(default=None, description="Outline that people avoid and touch.")
-    box: BoxBody | None = Field(default=None, description="The same, in place of `disc`.")
-    clearance: NonNegativeLength = Field(
-        default=0.03, description="Lower edge of the outline above the floor, m."
-    )
-    meshes: Literal["boxes", "hulls", "pieces"] = Field(
-        default="boxes",
-        exclude_if=lambda value: value == "boxes",
-        description="What collision meshes beside the file become: boxes around them, convex "
+    disc: DiscBody | None = default(None, "Outline that people avoid and touch.")
+    box: BoxBody | None = default(None, "The same, in place of `disc`.")
+    clearance: NonNegativeLength = default(0.03, "Lower edge of the outline above the floor, m.")
+    meshes: Literal["boxes", "hulls", "pieces"] = default(
+        "boxes",
+        "What collision meshes beside the file become: boxes around them, convex "
         "hulls, or convex pieces, for which the extra `meshes` is needed; else they are hulls.",
+        exclude_if=lambda value: value == "boxes",
     )
-    casters: dict[str, Caster] = Field(default={}, description="Named casters.")
+    casters: dict[str, Caster] = default({}, "Named casters.")
     max_speed: PositiveSpeed = Field(description="Largest |v|, m/s.")
     max_yaw_rate: PositiveAngularSpeed = Field(description="Largest |w|, rad/s.")
     max_acceleration: PositiveAcceleration = Field(description="Slew of v, m/s^2.")
     max_yaw_acceleration: PositiveAngularAcceleration = Field(description="Slew of w, rad/s^2.")
-    command_timeout: PositiveDuration = Field(
-        default=0.6, description="The robot stops after this long without a command, s."
+    command_timeout: PositiveDuration = default(
+        0.6, "The robot stops after this long without a command, s."
     )
 
     @model_validator(mode="after")
@@ -165,16 +162,12 @@ class UrdfSpec(UrdfFields):
 class OmniWheels(Spec):
     """The wheels of a holonomic drive, which slide; a force moves the base."""
 
-    joints: tuple[str, ...] = Field(
-        default=(), strict=False, description="Joints of the wheels, which do not turn."
-    )
+    joints: tuple[str, ...] = default((), "Joints of the wheels, which do not turn.", strict=False)
     radius: PositiveLength = Field(description="Of the wheels, m.")
     max_force: PositiveForce = Field(description="Largest horizontal force, N.")
     max_torque: Torque = Field(description="Largest torque about the vertical, N m.")
-    base_height: NonNegativeLength | None = Field(
-        default=None,
-        description="Height of the base above the floor, m; unset: that at which the lowest wheel "
-        "stands.",
+    base_height: NonNegativeLength | None = default(
+        None, "Height of the base above the floor, m; unset: that at which the lowest wheel stands."
     )
 
 

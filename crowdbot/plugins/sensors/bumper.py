@@ -6,7 +6,7 @@ import math
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Le
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from crowdbot.plugin import (
     Angle,
@@ -16,6 +16,7 @@ from crowdbot.plugin import (
     PositiveFrequency,
     PositiveLength,
     SensorSpec,
+    default,
 )
 
 
@@ -26,18 +27,14 @@ class BumperSpec(SensorSpec):
     """
 
     kind: Literal["bumper"] = "bumper"
-    mount: Mount = Field(default=Mount(), description="Centre of the ring; only x, y, yaw count.")
-    rate: PositiveFrequency = Field(default=64.0, le=128, description="Readings per second, Hz.")
-    sectors: Annotated[int, Ge(1), Le(360)] = Field(default=3, description="Number of sectors.")
-    angle_min: Angle = Field(default=-math.pi / 2, description="Begin of the first sector, rad.")
-    angle_max: Angle = Field(default=math.pi / 2, description="End of the last sector, rad.")
-    radius: PositiveLength = Field(default=0.178, description="Radius of the ring, m.")
-    reach: NonNegativeLength = Field(
-        default=0.002, description="How far out of the ring it feels, m."
-    )
-    height: PositiveLength = Field(
-        default=0.42, description="Walls whose lower edge is above this are not felt, m."
-    )
+    mount: Mount = default(Mount(), "Centre of the ring; only x, y, yaw count.")
+    rate: PositiveFrequency = default(64.0, "Readings per second, Hz.", le=128)
+    sectors: Annotated[int, Ge(1), Le(360)] = default(3, "Number of sectors.")
+    angle_min: Angle = default(-math.pi / 2, "Begin of the first sector, rad.")
+    angle_max: Angle = default(math.pi / 2, "End of the last sector, rad.")
+    radius: PositiveLength = default(0.178, "Radius of the ring, m.")
+    reach: NonNegativeLength = default(0.002, "How far out of the ring it feels, m.")
+    height: PositiveLength = default(0.42, "Walls whose lower edge is above this are not felt, m.")
 
     @model_validator(mode="after")
     def _within_a_turn(self) -> BumperSpec:

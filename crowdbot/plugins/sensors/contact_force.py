@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
-
-from crowdbot.plugin import Component, Mount, PositiveForce, PositiveFrequency, SensorSpec
+from crowdbot.plugin import Component, Mount, PositiveForce, PositiveFrequency, SensorSpec, default
 
 
 class ContactForceSpec(SensorSpec):
@@ -16,13 +14,11 @@ class ContactForceSpec(SensorSpec):
     """
 
     kind: Literal["contact_force"] = "contact_force"
-    mount: Mount = Field(default=Mount(), description="Pose on the robot; x, y and yaw count.")
-    rate: PositiveFrequency = Field(default=128.0, le=128, description="Readings per second, Hz.")
-    noise: float = Field(
-        default=0.0, ge=0, description="Standard deviation of each force, N; of the torque, N m."
-    )
-    force_max: PositiveForce = Field(
-        default=1000.0, description="Larger forces are measured as this, in their direction, N."
+    mount: Mount = default(Mount(), "Pose on the robot; x, y and yaw count.")
+    rate: PositiveFrequency = default(128.0, "Readings per second, Hz.", le=128)
+    noise: float = default(0.0, "Standard deviation of each force, N; of the torque, N m.", ge=0)
+    force_max: PositiveForce = default(
+        1000.0, "Larger forces are measured as this, in their direction, N."
     )
 
 

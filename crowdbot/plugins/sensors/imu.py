@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from pydantic import Field
 
-from crowdbot.plugin import Component, PositiveFrequency, SensorSpec, TiltableMount
+from crowdbot.plugin import Component, PositiveFrequency, SensorSpec, TiltableMount, default
 
 NotNegative = Annotated[float, Ge(0)]
 
@@ -20,26 +19,18 @@ class ImuSpec(SensorSpec):
     """
 
     kind: Literal["imu"] = "imu"
-    mount: TiltableMount = Field(default=TiltableMount(), description="Pose on the robot.")
-    rate: PositiveFrequency = Field(default=64.0, le=128, description="Readings per second, Hz.")
-    gyro_noise: NotNegative = Field(
-        default=5.2e-4, description="Density of the noise of angular rates, rad/s/sqrt(Hz)."
+    mount: TiltableMount = default(TiltableMount(), "Pose on the robot.")
+    rate: PositiveFrequency = default(64.0, "Readings per second, Hz.", le=128)
+    gyro_noise: NotNegative = default(
+        5.2e-4, "Density of the noise of angular rates, rad/s/sqrt(Hz)."
     )
-    gyro_bias: NotNegative = Field(
-        default=0.0, description="Standard deviation of the bias at the start, rad/s."
+    gyro_bias: NotNegative = default(0.0, "Standard deviation of the bias at the start, rad/s.")
+    gyro_walk: NotNegative = default(0.0, "Random walk of that bias, rad/s/sqrt(s).")
+    force_noise: NotNegative = default(
+        3.9e-3, "Density of the noise of specific force, m/s^2/sqrt(Hz)."
     )
-    gyro_walk: NotNegative = Field(
-        default=0.0, description="Random walk of that bias, rad/s/sqrt(s)."
-    )
-    force_noise: NotNegative = Field(
-        default=3.9e-3, description="Density of the noise of specific force, m/s^2/sqrt(Hz)."
-    )
-    force_bias: NotNegative = Field(
-        default=0.0, description="Standard deviation of the bias at the start, m/s^2."
-    )
-    force_walk: NotNegative = Field(
-        default=0.0, description="Random walk of that bias, m/s^2/sqrt(s)."
-    )
+    force_bias: NotNegative = default(0.0, "Standard deviation of the bias at the start, m/s^2.")
+    force_walk: NotNegative = default(0.0, "Random walk of that bias, m/s^2/sqrt(s).")
 
 
 IMU = Component(

@@ -6,25 +6,23 @@ import math
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le
-from pydantic import Field
 
-from crowdbot.plugin import Component, Incidence, Quantity, RangeSensorSpec, TiltableMount
+from crowdbot.plugin import Component, Incidence, Quantity, RangeSensorSpec, TiltableMount, default
 
 
 class InfraredSpec(RangeSensorSpec):
     """Measures the nearest surface that faces a narrow beam; the floor only if tilted."""
 
     kind: Literal["infrared"] = "infrared"
-    mount: TiltableMount = Field(default=TiltableMount(), description="Pose on the robot.")
-    dispersion: Annotated[float, Gt(0), Le(0.5), Quantity("angle")] = Field(
-        default=math.pi / 360, description="Angle from the axis to the edge of the beam, rad."
+    mount: TiltableMount = default(TiltableMount(), "Pose on the robot.")
+    dispersion: Annotated[float, Gt(0), Le(0.5), Quantity("angle")] = default(
+        math.pi / 360, "Angle from the axis to the edge of the beam, rad."
     )
-    rays: Annotated[int, Ge(1), Le(10_000)] = Field(
-        default=100, description="Random rays of one reading, denser near the axis."
+    rays: Annotated[int, Ge(1), Le(10_000)] = default(
+        100, "Random rays of one reading, denser near the axis."
     )
-    max_incidence: Incidence = Field(
-        default=math.pi / 4,
-        description="Surfaces struck at a larger angle to their normal return nothing, rad.",
+    max_incidence: Incidence = default(
+        math.pi / 4, "Surfaces struck at a larger angle to their normal return nothing, rad."
     )
 
     def field_of_view(self) -> tuple[float, float, float]:

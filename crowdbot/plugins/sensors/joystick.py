@@ -20,6 +20,7 @@ from crowdbot.plugin import (
     Quantity,
     SensorSpec,
     Speed,
+    default,
 )
 
 #: Start time of a command, s; speed, m/s; yaw rate, rad/s.
@@ -39,33 +40,27 @@ class JoystickSpec(SensorSpec):
     """
 
     kind: Literal["joystick"] = "joystick"
-    rate: PositiveFrequency = Field(default=16.0, le=128, description="Readings per second, Hz.")
-    goal: Place | None = Field(
-        default=None, description="Where the driver wants to go, m; unset: the task's goal."
+    rate: PositiveFrequency = default(16.0, "Readings per second, Hz.", le=128)
+    goal: Place | None = default(None, "Where the driver wants to go, m; unset: the task's goal.")
+    max_speed: PositiveSpeed | None = default(
+        None, "Speed of the stick fully ahead, m/s; unset: the robot's."
     )
-    max_speed: PositiveSpeed | None = Field(
-        default=None, description="Speed of the stick fully ahead, m/s; unset: the robot's."
+    max_yaw_rate: PositiveAngularSpeed | None = default(
+        None, "Yaw rate of the stick fully aside, rad/s; unset: the robot's."
     )
-    max_yaw_rate: PositiveAngularSpeed | None = Field(
-        default=None, description="Yaw rate of the stick fully aside, rad/s; unset: the robot's."
+    steering: Annotated[float, Ge(0)] = default(
+        1.5, "Yaw rate for each radian that the goal is off the heading, 1/s."
     )
-    steering: Annotated[float, Ge(0)] = Field(
-        default=1.5, description="Yaw rate for each radian that the goal is off the heading, 1/s."
+    slow_distance: PositiveLength = default(1.5, "Nearer to the goal the driver slows down, m.")
+    noise: Annotated[float, Ge(0), Le(1)] = default(
+        0.1, "Standard deviation of the hand, a fraction of full deflection."
     )
-    slow_distance: PositiveLength = Field(
-        default=1.5, description="Nearer to the goal the driver slows down, m."
-    )
-    noise: Annotated[float, Ge(0), Le(1)] = Field(
-        default=0.1, description="Standard deviation of the hand, a fraction of full deflection."
-    )
-    noise_time: PositiveDuration = Field(
-        default=0.5, description="Correlation time of the hand's error, s."
-    )
-    recorded: Annotated[tuple[RecordedCommand, ...], MinLen(1)] | None = Field(
-        default=None,
-        strict=False,
-        description="Commands of a real driver in place of the scripted one, without noise: "
+    noise_time: PositiveDuration = default(0.5, "Correlation time of the hand's error, s.")
+    recorded: Annotated[tuple[RecordedCommand, ...], MinLen(1)] | None = default(
+        None,
+        "Commands of a real driver in place of the scripted one, without noise: "
         "[t, v, w], each from t on, s, m/s, rad/s.",
+        strict=False,
     )
 
     @field_validator("recorded")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from crowdbot.plugin import (
     MOST_RAYS,
@@ -15,6 +15,7 @@ from crowdbot.plugin import (
     PositiveLength,
     RangeSensorSpec,
     TiltableMount,
+    default,
 )
 
 _SLACK = 1e-9  # rad; 360 deg in any unit is one turn
@@ -23,17 +24,13 @@ _SLACK = 1e-9  # rad; 360 deg in any unit is one turn
 class LidarSpec(RangeSensorSpec):
     """Beams from ``angle_min`` (included) to ``angle_max`` (excluded), counter-clockwise."""
 
-    mount: TiltableMount = Field(default=TiltableMount(), description="Pose on the robot.")
-    rate: PositiveFrequency = Field(default=16.0, le=128, description="Scans per second, Hz.")
-    angle_min: Angle = Field(default=-2.0943951023931953, description="First beam, rad.")
-    angle_max: Angle = Field(default=2.0943951023931953, description="End of the scan, rad.")
-    angle_step: PositiveAngle = Field(
-        default=0.008726646259971648, description="Between beams, rad."
-    )
-    range_min: NonNegativeLength = Field(
-        default=0.1, description="Nearest reading; what is nearer reads this, m."
-    )
-    range_max: PositiveLength = Field(default=10.0, description="Farthest hit, m.")
+    mount: TiltableMount = default(TiltableMount(), "Pose on the robot.")
+    rate: PositiveFrequency = default(16.0, "Scans per second, Hz.", le=128)
+    angle_min: Angle = default(-2.0943951023931953, "First beam, rad.")
+    angle_max: Angle = default(2.0943951023931953, "End of the scan, rad.")
+    angle_step: PositiveAngle = default(0.008726646259971648, "Between beams, rad.")
+    range_min: NonNegativeLength = default(0.1, "Nearest reading; what is nearer reads this, m.")
+    range_max: PositiveLength = default(10.0, "Farthest hit, m.")
 
     @property
     def beams(self) -> int:

@@ -6,9 +6,9 @@ import math
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Le, MaxLen
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
-from crowdbot.plugin import MOST_RAYS, Angle, Component, PositiveAngle, Quantity
+from crowdbot.plugin import MOST_RAYS, Angle, Component, PositiveAngle, Quantity, default
 from crowdbot.plugins.sensors.lidar import LidarSpec
 
 Elevation = Annotated[float, Ge(-1.5), Le(1.5), Quantity("angle")]
@@ -22,18 +22,14 @@ class Lidar3dSpec(LidarSpec):
     """
 
     kind: Literal["lidar3d"] = "lidar3d"
-    angle_min: Angle = Field(default=-math.pi, description="First beam of a layer, rad.")
-    angle_max: Angle = Field(default=math.pi, description="End of a layer, rad.")
-    angle_step: PositiveAngle = Field(default=math.pi / 360, description="Between beams, rad.")
-    elevation_min: Elevation = Field(
-        default=-math.pi / 12, description="Lowest layer, over the horizon, rad."
-    )
-    elevation_max: Elevation = Field(
-        default=math.pi / 12, description="Highest layer, over the horizon, rad."
-    )
-    layers: Annotated[int, Ge(1), Le(512)] = Field(default=16, description="How many there are.")
-    elevations: Annotated[tuple[Elevation, ...], MaxLen(512)] = Field(
-        default=(), strict=False, description="The layers one by one, rising, rad."
+    angle_min: Angle = default(-math.pi, "First beam of a layer, rad.")
+    angle_max: Angle = default(math.pi, "End of a layer, rad.")
+    angle_step: PositiveAngle = default(math.pi / 360, "Between beams, rad.")
+    elevation_min: Elevation = default(-math.pi / 12, "Lowest layer, over the horizon, rad.")
+    elevation_max: Elevation = default(math.pi / 12, "Highest layer, over the horizon, rad.")
+    layers: Annotated[int, Ge(1), Le(512)] = default(16, "How many there are.")
+    elevations: Annotated[tuple[Elevation, ...], MaxLen(512)] = default(
+        (), "The layers one by one, rising, rad.", strict=False
     )
 
     @property

@@ -6,7 +6,6 @@ import math
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le, Lt
-from pydantic import Field
 
 from crowdbot.plugin import (
     Component,
@@ -17,6 +16,7 @@ from crowdbot.plugin import (
     PositiveLength,
     Quantity,
     SensorSpec,
+    default,
 )
 
 
@@ -28,31 +28,21 @@ class PeopleTrackerSpec(SensorSpec):
     """
 
     kind: Literal["people_tracker"] = "people_tracker"
-    mount: Mount = Field(
-        default=Mount(z=0.4), description="Where lines of sight begin; yaw turns the view."
+    mount: Mount = default(Mount(z=0.4), "Where lines of sight begin; yaw turns the view.")
+    rate: PositiveFrequency = default(16.0, "Readings per second, Hz.", le=128)
+    range_max: PositiveLength = default(10.0, "Farthest centre of a person, from the mount, m.")
+    view: Annotated[float, Gt(0), Le(2.0 * math.pi), Quantity("angle")] = default(
+        2.0 * math.pi, "Horizontal field of view, rad."
     )
-    rate: PositiveFrequency = Field(default=16.0, le=128, description="Readings per second, Hz.")
-    range_max: PositiveLength = Field(
-        default=10.0, description="Farthest centre of a person, from the mount, m."
+    max_people: Annotated[int, Ge(1), Le(10_000)] = default(
+        32, "Rows of a reading; the nearest are kept."
     )
-    view: Annotated[float, Gt(0), Le(2.0 * math.pi), Quantity("angle")] = Field(
-        default=2.0 * math.pi, description="Horizontal field of view, rad."
+    occlusion: bool = default(True, "Whether people must be in line of sight to be tracked.")
+    miss: Annotated[float, Ge(0), Lt(1)] = default(
+        0.0, "Probability that a person is left out of a reading."
     )
-    max_people: Annotated[int, Ge(1), Le(10_000)] = Field(
-        default=32, description="Rows of a reading; the nearest are kept."
-    )
-    occlusion: bool = Field(
-        default=True, description="Whether people must be in line of sight to be tracked."
-    )
-    miss: Annotated[float, Ge(0), Lt(1)] = Field(
-        default=0.0, description="Probability that a person is left out of a reading."
-    )
-    position_noise: NonNegativeLength = Field(
-        default=0.0, description="Standard deviation along each axis, m."
-    )
-    velocity_noise: NonNegativeSpeed = Field(
-        default=0.0, description="Standard deviation along each axis, m/s."
-    )
+    position_noise: NonNegativeLength = default(0.0, "Standard deviation along each axis, m.")
+    velocity_noise: NonNegativeSpeed = default(0.0, "Standard deviation along each axis, m/s.")
 
     def field_of_view(self) -> tuple[float, float, float]:
         """Return first and last angle, rad, and range, m, for drawings."""

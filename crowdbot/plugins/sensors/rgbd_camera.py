@@ -6,7 +6,7 @@ import math
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le, Lt
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from crowdbot.plugin import (
     Component,
@@ -17,6 +17,7 @@ from crowdbot.plugin import (
     Quantity,
     SensorSpec,
     TiltableMount,
+    default,
 )
 
 DepthRenderer = Annotated[int, Ge(2), Le(4096)]
@@ -33,38 +34,31 @@ class RgbdCameraSpec(SensorSpec):
     """
 
     kind: Literal["rgbd_camera"] = "rgbd_camera"
-    mount: TiltableMount = Field(
-        default=TiltableMount(), description="Pose on the robot; it looks along x."
+    mount: TiltableMount = default(TiltableMount(), "Pose on the robot; it looks along x.")
+    rate: PositiveFrequency = default(8.0, "Images per second, Hz.", le=128)
+    width: DepthRenderer = default(320, "Columns of an image.")
+    height: DepthRenderer = default(240, "Rows of an image.")
+    horizontal_view: FieldOfView = default(
+        math.pi / 3, "Horizontal field of view, rad; pixels are square."
     )
-    rate: PositiveFrequency = Field(default=8.0, le=128, description="Images per second, Hz.")
-    width: DepthRenderer = Field(default=320, description="Columns of an image.")
-    height: DepthRenderer = Field(default=240, description="Rows of an image.")
-    horizontal_view: FieldOfView = Field(
-        default=math.pi / 3, description="Horizontal field of view, rad; pixels are square."
+    depth_min: NonNegativeLength = default(0.4, "Nearest depth measured, m.")
+    depth_max: PositiveLength = default(8.0, "Farthest depth measured, m.")
+    max_incidence: Incidence = default(
+        math.pi / 2, "Surfaces struck at a larger angle to their normal read inf, rad."
     )
-    depth_min: NonNegativeLength = Field(default=0.4, description="Nearest depth measured, m.")
-    depth_max: PositiveLength = Field(default=8.0, description="Farthest depth measured, m.")
-    max_incidence: Incidence = Field(
-        default=math.pi / 2,
-        description="Surfaces struck at a larger angle to their normal read inf, rad.",
+    noise: Annotated[float, Ge(0)] = default(
+        0.0, "Standard deviation of depth per squared depth, 1/m; 0.0014 is a Kinect's."
     )
-    noise: Annotated[float, Ge(0)] = Field(
-        default=0.0,
-        description="Standard deviation of depth per squared depth, 1/m; 0.0014 is a Kinect's.",
+    resolution: NonNegativeLength = default(
+        0.0, "Depths are rounded to multiples of this, m; 0: not."
     )
-    resolution: NonNegativeLength = Field(
-        default=0.0, description="Depths are rounded to multiples of this, m; 0: not."
+    bits: Annotated[int, Ge(0), Le(32)] = default(
+        0, "Depths are rounded down to 2^bits steps of the range; 0: not."
     )
-    bits: Annotated[int, Ge(0), Le(32)] = Field(
-        default=0,
-        description="Depths are rounded down to 2^bits steps of the range; 0: not.",
+    dropout: Annotated[float, Ge(0), Lt(1)] = default(
+        0.0, "Probability that a pixel is lost and reads inf."
     )
-    dropout: Annotated[float, Ge(0), Lt(1)] = Field(
-        default=0.0, description="Probability that a pixel is lost and reads inf."
-    )
-    colour: bool = Field(
-        default=False, description="Whether it takes colour images too; they need EGL."
-    )
+    colour: bool = default(False, "Whether it takes colour images too; they need EGL.")
 
     def field_of_view(self) -> tuple[float, float, float]:
         """Return first and last angle, rad, and range, m, for drawings."""

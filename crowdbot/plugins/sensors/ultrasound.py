@@ -6,9 +6,15 @@ import math
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Le
-from pydantic import Field
 
-from crowdbot.plugin import Component, PositiveLength, Quantity, RangeSensorSpec, TiltableMount
+from crowdbot.plugin import (
+    Component,
+    PositiveLength,
+    Quantity,
+    RangeSensorSpec,
+    TiltableMount,
+    default,
+)
 
 _DEGREE = math.pi / 180.0
 
@@ -21,12 +27,12 @@ class UltrasoundSpec(RangeSensorSpec):
     """
 
     kind: Literal["ultrasound"] = "ultrasound"
-    mount: TiltableMount = Field(default=TiltableMount(), description="Pose on the robot.")
-    radius: PositiveLength = Field(
-        default=1.0, description="Largest radius of the zone, at three quarters of its length, m."
+    mount: TiltableMount = default(TiltableMount(), "Pose on the robot.")
+    radius: PositiveLength = default(
+        1.0, "Largest radius of the zone, at three quarters of its length, m."
     )
-    resolution: Annotated[float, Ge(0.2 * _DEGREE), Le(10 * _DEGREE), Quantity("angle")] = Field(
-        default=2.0 * _DEGREE, description="Between the rays that search the zone, rad."
+    resolution: Annotated[float, Ge(0.2 * _DEGREE), Le(10 * _DEGREE), Quantity("angle")] = default(
+        2.0 * _DEGREE, "Between the rays that search the zone, rad."
     )
 
     @property

@@ -5,33 +5,36 @@ from __future__ import annotations
 from typing import Annotated, Literal, Self
 
 from annotated_types import Ge, Gt
-from pydantic import Field
 
-from crowdbot.plugin import Component, PositiveFrequency, PositiveLength, RobotSpec, SensorSpec
+from crowdbot.plugin import (
+    Component,
+    PositiveFrequency,
+    PositiveLength,
+    RobotSpec,
+    SensorSpec,
+    default,
+)
 
 
 class OdometrySpec(SensorSpec):
     """Fields of wheel odometry, with two wheels or three."""
 
-    rate: PositiveFrequency = Field(default=64.0, le=128, description="Readings per second, Hz.")
-    wheel_radius: PositiveLength | None = Field(
-        default=None, description="Radius the firmware believes in, m; unset: the robot's."
+    rate: PositiveFrequency = default(64.0, "Readings per second, Hz.", le=128)
+    wheel_radius: PositiveLength | None = default(
+        None, "Radius the firmware believes in, m; unset: the robot's."
     )
-    track: PositiveLength | None = Field(
-        default=None, description="Distance between the wheels, m; unset: the robot's."
+    track: PositiveLength | None = default(
+        None, "Distance between the wheels, m; unset: the robot's."
     )
-    ticks_per_turn: Annotated[float, Gt(0)] = Field(
-        default=2578.33, description="Encoder ticks per wheel turn."
+    ticks_per_turn: Annotated[float, Gt(0)] = default(2578.33, "Encoder ticks per wheel turn.")
+    noise: Annotated[float, Ge(0)] = default(
+        0.0, "Standard deviation of each wheel's rate, drawn at each reading, rad/s."
     )
-    noise: Annotated[float, Ge(0)] = Field(
-        default=0.0,
-        description="Standard deviation of each wheel's rate, drawn at each reading, rad/s.",
+    heading: Literal["wheels", "gyro"] = default(
+        "wheels", "Where yaw and w come from; a Kobuki can use its gyro."
     )
-    heading: Literal["wheels", "gyro"] = Field(
-        default="wheels", description="Where yaw and w come from; a Kobuki can use its gyro."
-    )
-    gyro_noise: Annotated[float, Ge(0)] = Field(
-        default=5.2e-4, description="Density of the gyro's noise, rad/s/sqrt(Hz)."
+    gyro_noise: Annotated[float, Ge(0)] = default(
+        5.2e-4, "Density of the gyro's noise, rad/s/sqrt(Hz)."
     )
 
     def on_robot(self, robot: RobotSpec) -> Self:
@@ -70,7 +73,7 @@ class BaseOdometrySpec(SensorSpec):
     """
 
     kind: Literal["base_odometry"] = "base_odometry"
-    rate: PositiveFrequency = Field(default=64.0, le=128, description="Readings per second, Hz.")
+    rate: PositiveFrequency = default(64.0, "Readings per second, Hz.", le=128)
 
 
 BASE_ODOMETRY = Component(

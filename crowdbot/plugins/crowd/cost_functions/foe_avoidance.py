@@ -9,17 +9,16 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from pydantic import Field
 
-from crowdbot.plugin import Component, CostFunctionSpec, Range
+from crowdbot.plugin import Component, CostFunctionSpec, Range, default
 
 
 class FoeAvoidanceSpec(CostFunctionSpec):
     """Turns and brakes so that no one stays in the focus of expansion."""
 
     kind: Literal["foe_avoidance"] = "foe_avoidance"
-    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
-    range: Range = Field(default=Range(), description="Which neighbours and walls count.")
+    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
+    range: Range = default(Range(), "Which neighbours and walls count.")
 
 
 FOE_AVOIDANCE = Component(

@@ -9,17 +9,16 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from pydantic import Field
 
-from crowdbot.plugin import Component, CostFunctionSpec, Range
+from crowdbot.plugin import Component, CostFunctionSpec, Range, default
 
 
 class GoalReachingForceSpec(CostFunctionSpec):
     """Pulls towards the preferred velocity within the policy's relaxation time."""
 
     kind: Literal["goal_reaching_force"] = "goal_reaching_force"
-    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
-    range: Range = Field(default=Range(), description="Has no effect: no neighbour counts.")
+    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
+    range: Range = default(Range(), "Has no effect: no neighbour counts.")
 
 
 GOAL_REACHING_FORCE = Component(

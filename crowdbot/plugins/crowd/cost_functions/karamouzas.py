@@ -9,30 +9,21 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from pydantic import Field
 
-from crowdbot.plugin import Component, CostFunctionSpec, PositiveDuration, Range
+from crowdbot.plugin import Component, CostFunctionSpec, PositiveDuration, Range, default
 
 
 class KaramouzasSpec(CostFunctionSpec):
     """Least effort among velocities whose deviation fits the time left before a collision."""
 
     kind: Literal["karamouzas"] = "karamouzas"
-    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
-    range: Range = Field(default=Range(), description="Which neighbours and walls count.")
-    alpha: Annotated[float, Ge(0)] = Field(
-        default=5.0, description="Weight of the deviation in heading."
-    )
-    beta: Annotated[float, Ge(0)] = Field(default=0.5, description="Weight of the change of speed.")
-    gamma: Annotated[float, Ge(0)] = Field(
-        default=1.0, description="Weight of the deviation in velocity."
-    )
-    delta: Annotated[float, Ge(0)] = Field(
-        default=1.0, description="Weight of the time to collision."
-    )
-    t_max: PositiveDuration = Field(
-        default=8.0, description="Collisions later than this cost nothing, s."
-    )
+    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
+    range: Range = default(Range(), "Which neighbours and walls count.")
+    alpha: Annotated[float, Ge(0)] = default(5.0, "Weight of the deviation in heading.")
+    beta: Annotated[float, Ge(0)] = default(0.5, "Weight of the change of speed.")
+    gamma: Annotated[float, Ge(0)] = default(1.0, "Weight of the deviation in velocity.")
+    delta: Annotated[float, Ge(0)] = default(1.0, "Weight of the time to collision.")
+    t_max: PositiveDuration = default(8.0, "Collisions later than this cost nothing, s.")
 
 
 KARAMOUZAS = Component(

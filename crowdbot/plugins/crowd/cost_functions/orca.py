@@ -8,25 +8,22 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from pydantic import Field
 
-from crowdbot.plugin import Component, CostFunctionSpec, PositiveDuration, Range
+from crowdbot.plugin import Component, CostFunctionSpec, PositiveDuration, Range, default
 
 
 class OrcaSpec(CostFunctionSpec):
     """The velocity nearest to the preferred one that stays safe for a time horizon."""
 
     kind: Literal["orca"] = "orca"
-    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
-    range: Range = Field(default=Range(), description="Which neighbours and walls count.")
-    time_horizon: PositiveDuration = Field(
-        default=5.0, description="How long the velocity has to be safe, s."
-    )
-    limit: Literal["max_speed", "preferred_speed"] = Field(
-        default="max_speed",
-        exclude_if=lambda value: value == "max_speed",
-        description="Largest speed of the optimum: the agent's, as in the original, or the "
+    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
+    range: Range = default(Range(), "Which neighbours and walls count.")
+    time_horizon: PositiveDuration = default(5.0, "How long the velocity has to be safe, s.")
+    limit: Literal["max_speed", "preferred_speed"] = default(
+        "max_speed",
+        "Largest speed of the optimum: the agent's, as in the original, or the "
         "preferred one, so that people do not hurry out of others' way.",
+        exclude_if=lambda value: value == "max_speed",
     )
 
 

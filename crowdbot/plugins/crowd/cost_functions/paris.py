@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Le
-from pydantic import Field
 
 from crowdbot.plugin import (
     Component,
@@ -17,6 +16,7 @@ from crowdbot.plugin import (
     NonNegativeDuration,
     PositiveDuration,
     Range,
+    default,
 )
 
 
@@ -24,17 +24,13 @@ class ParisSpec(CostFunctionSpec):
     """Rates each direction by the speeds at which an agent passes in front of or behind others."""
 
     kind: Literal["paris"] = "paris"
-    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
-    range: Range = Field(default=Range(), description="Which neighbours and walls count.")
-    w_a: Annotated[float, Ge(0), Le(1)] = Field(
-        default=0.5, description="Share of others in the cost; the rest is the heading."
+    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
+    range: Range = default(Range(), "Which neighbours and walls count.")
+    w_a: Annotated[float, Ge(0), Le(1)] = default(
+        0.5, "Share of others in the cost; the rest is the heading."
     )
-    w_b: NonNegativeDuration = Field(
-        default=0.0, description="Time added to the horizon in the urgency, s."
-    )
-    t_max: PositiveDuration = Field(
-        default=8.0, description="Crossings later than this do not count, s."
-    )
+    w_b: NonNegativeDuration = default(0.0, "Time added to the horizon in the urgency, s.")
+    t_max: PositiveDuration = default(8.0, "Crossings later than this do not count, s.")
 
 
 PARIS = Component(spec=ParisSpec, summary="passing before or behind others (Paris et al. 2007)")

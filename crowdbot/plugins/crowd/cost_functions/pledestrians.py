@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt
-from pydantic import Field
 
 from crowdbot.plugin import (
     Component,
@@ -17,6 +16,7 @@ from crowdbot.plugin import (
     NonNegativeDuration,
     PositiveDuration,
     Range,
+    default,
 )
 
 
@@ -24,18 +24,14 @@ class PledestriansSpec(CostFunctionSpec):
     """Least metabolic energy to the goal without an early collision."""
 
     kind: Literal["pledestrians"] = "pledestrians"
-    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
-    range: Range = Field(default=Range(), description="Which neighbours and walls count.")
-    w_a: Annotated[float, Gt(0)] = Field(default=2.23, description="Power of standing, W/kg.")
-    w_b: Annotated[float, Gt(0)] = Field(
-        default=1.26, description="Power of walking per squared speed, W s^2/(kg m^2)."
+    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
+    range: Range = default(Range(), "Which neighbours and walls count.")
+    w_a: Annotated[float, Gt(0)] = default(2.23, "Power of standing, W/kg.")
+    w_b: Annotated[float, Gt(0)] = default(
+        1.26, "Power of walking per squared speed, W s^2/(kg m^2)."
     )
-    t_min: NonNegativeDuration = Field(
-        default=0.5, description="Collisions sooner than this are forbidden, s."
-    )
-    t_max: PositiveDuration = Field(
-        default=3.0, description="How long the velocity is kept in the plan, s."
-    )
+    t_min: NonNegativeDuration = default(0.5, "Collisions sooner than this are forbidden, s.")
+    t_max: PositiveDuration = default(3.0, "How long the velocity is kept in the plan, s.")
 
 
 PLEDESTRIANS = Component(

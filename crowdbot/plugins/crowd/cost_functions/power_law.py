@@ -9,21 +9,18 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from pydantic import Field
 
-from crowdbot.plugin import Component, CostFunctionSpec, PositiveDuration, Range
+from crowdbot.plugin import Component, CostFunctionSpec, PositiveDuration, Range, default
 
 
 class PowerLawSpec(CostFunctionSpec):
     """Pushes away from collisions with a power law of the time left."""
 
     kind: Literal["power_law"] = "power_law"
-    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
-    range: Range = Field(default=Range(), description="Which neighbours and walls count.")
-    k: Annotated[float, Ge(0)] = Field(default=1.5, description="Strength, m^2.")
-    tau0: PositiveDuration = Field(
-        default=3.0, description="Collisions later than this do not count, s."
-    )
+    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
+    range: Range = default(Range(), "Which neighbours and walls count.")
+    k: Annotated[float, Ge(0)] = default(1.5, "Strength, m^2.")
+    tau0: PositiveDuration = default(3.0, "Collisions later than this do not count, s.")
 
 
 POWER_LAW = Component(

@@ -9,17 +9,16 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from pydantic import Field
 
-from crowdbot.plugin import Component, CostFunctionSpec, Range
+from crowdbot.plugin import Component, CostFunctionSpec, Range, default
 
 
 class RandomFunctionSpec(CostFunctionSpec):
     """A random cost between 0 and 2, from each agent's own generator."""
 
     kind: Literal["random_function"] = "random_function"
-    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
-    range: Range = Field(default=Range(), description="Has no effect: no neighbour counts.")
+    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
+    range: Range = default(Range(), "Has no effect: no neighbour counts.")
 
 
 RANDOM_FUNCTION = Component(

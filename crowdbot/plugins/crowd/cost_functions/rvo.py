@@ -9,18 +9,17 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from pydantic import Field
 
-from crowdbot.plugin import Component, CostFunctionSpec, Range
+from crowdbot.plugin import Component, CostFunctionSpec, Range, default
 
 
 class RvoSpec(CostFunctionSpec):
     """Reflex against imminent collisions with people and walls."""
 
     kind: Literal["rvo"] = "rvo"
-    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
-    range: Range = Field(default=Range(), description="Which neighbours and walls count.")
-    w: Annotated[float, Ge(0)] = Field(default=1.0, description="Weight of the collision term, m.")
+    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
+    range: Range = default(Range(), "Which neighbours and walls count.")
+    w: Annotated[float, Ge(0)] = default(1.0, "Weight of the collision term, m.")
 
 
 RVO = Component(spec=RvoSpec, summary="reciprocal velocity obstacles (van den Berg et al. 2008)")

@@ -9,29 +9,33 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from pydantic import Field
 
-from crowdbot.plugin import Component, CostFunctionSpec, PositiveDuration, PositiveLength, Range
+from crowdbot.plugin import (
+    Component,
+    CostFunctionSpec,
+    PositiveDuration,
+    PositiveLength,
+    Range,
+    default,
+)
 
 
 class SocialForcesAvoidanceSpec(CostFunctionSpec):
     """Pushes away from people and walls, less from people behind."""
 
     kind: Literal["social_forces_avoidance"] = "social_forces_avoidance"
-    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
-    range: Range = Field(default=Range(), description="Which neighbours and walls count.")
-    v0: Annotated[float, Ge(0)] = Field(default=2.1, description="Strength of people, m^2/s^2.")
-    sigma: PositiveLength = Field(default=0.3, description="Reach of people, m.")
-    u0: Annotated[float, Ge(0)] = Field(default=10.0, description="Strength of walls, m^2/s^2.")
-    r: PositiveLength = Field(default=0.2, description="Reach of walls, m.")
-    dt: PositiveDuration = Field(
-        default=1.0, description="Time of the stride that others are going to make, s."
-    )
-    stride: Literal["other", "relative"] = Field(
-        default="other",
-        exclude_if=lambda value: value == "other",
-        description="Whose stride makes the ellipse: the other's, as in the original, or the "
+    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
+    range: Range = default(Range(), "Which neighbours and walls count.")
+    v0: Annotated[float, Ge(0)] = default(2.1, "Strength of people, m^2/s^2.")
+    sigma: PositiveLength = default(0.3, "Reach of people, m.")
+    u0: Annotated[float, Ge(0)] = default(10.0, "Strength of walls, m^2/s^2.")
+    r: PositiveLength = default(0.2, "Reach of walls, m.")
+    dt: PositiveDuration = default(1.0, "Time of the stride that others are going to make, s.")
+    stride: Literal["other", "relative"] = default(
+        "other",
+        "Whose stride makes the ellipse: the other's, as in the original, or the "
         "other's relative to one's own, which does not drive a one-way crowd.",
+        exclude_if=lambda value: value == "other",
     )
 
 

@@ -9,20 +9,17 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from pydantic import Field
 
-from crowdbot.plugin import Component, CostFunctionSpec, PositiveLength, Range
+from crowdbot.plugin import Component, CostFunctionSpec, PositiveLength, Range, default
 
 
 class VanTollSpec(CostFunctionSpec):
     """Weighs the free distance against turning away from the goal and from the present velocity."""
 
     kind: Literal["van_toll"] = "van_toll"
-    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
-    range: Range = Field(default=Range(), description="Which neighbours and walls count.")
-    max_distance: PositiveLength = Field(
-        default=8.0, description="How far the way is looked at, m."
-    )
+    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
+    range: Range = default(Range(), "Which neighbours and walls count.")
+    max_distance: PositiveLength = default(8.0, "How far the way is looked at, m.")
 
 
 VAN_TOLL = Component(

@@ -9,14 +9,13 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
-
 from crowdbot.plugin import (
     Component,
     CrowdPolicySpec,
     NonNegativeSteeringStiffness,
     PositiveDuration,
     PositiveLength,
+    default,
 )
 
 
@@ -27,20 +26,14 @@ class JuPedSimSpec(CrowdPolicySpec):
     """
 
     kind: Literal["jupedsim"] = "jupedsim"
-    model: Literal["collision_free_speed", "anticipation_velocity"] = Field(
-        default="collision_free_speed", description="Which of the library's models."
+    model: Literal["collision_free_speed", "anticipation_velocity"] = default(
+        "collision_free_speed", "Which of the library's models."
     )
-    time_gap: PositiveDuration = Field(
-        default=1.06, description="Time to the person in front that people keep, s."
-    )
-    time_step: PositiveDuration = Field(
-        default=0.015625, description="Step of the library within a decision, s."
-    )
-    sight: PositiveLength = Field(
-        default=10.0, description="On a torus: how far people see across the border, m."
-    )
-    contact_stiffness: NonNegativeSteeringStiffness = Field(
-        default=62.5, description="Push between overlapping people and walls, 1/s^2."
+    time_gap: PositiveDuration = default(1.06, "Time to the person in front that people keep, s.")
+    time_step: PositiveDuration = default(0.015625, "Step of the library within a decision, s.")
+    sight: PositiveLength = default(10.0, "On a torus: how far people see across the border, m.")
+    contact_stiffness: NonNegativeSteeringStiffness = default(
+        62.5, "Push between overlapping people and walls, 1/s^2."
     )
 
 

@@ -12,6 +12,7 @@ from crowdbot.plugin import (
     CrowdPolicySpec,
     NonNegativeSteeringStiffness,
     PositiveDuration,
+    default,
 )
 
 
@@ -25,11 +26,11 @@ class ReplaySpec(CrowdPolicySpec):
 
     kind: Literal["replay"] = "replay"
     file: Asset = Field(description="CSV file with columns t (s), id, x, y (m).")
-    ahead: PositiveDuration = Field(
-        default=1.0, description="With cost functions: how far ahead of now the goal is, s."
+    ahead: PositiveDuration = default(
+        1.0, "With cost functions: how far ahead of now the goal is, s."
     )
-    contact_stiffness: NonNegativeSteeringStiffness = Field(
-        default=0.0, description="Push between overlapping people and walls, 1/s^2."
+    contact_stiffness: NonNegativeSteeringStiffness = default(
+        0.0, "Push between overlapping people and walls, 1/s^2."
     )
 
     @property

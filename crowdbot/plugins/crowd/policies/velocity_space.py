@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Le
-from pydantic import Field
 
 from crowdbot.plugin import (
     Component,
@@ -17,6 +16,7 @@ from crowdbot.plugin import (
     NonNegativeDuration,
     NonNegativeSteeringStiffness,
     PositiveAngle,
+    default,
 )
 
 
@@ -25,37 +25,29 @@ class VelocitySpaceSpec(CrowdPolicySpec):
 
     needs_costs: ClassVar[bool] = True
     kind: Literal["velocity_space"] = "velocity_space"
-    method: Literal["sampling", "gradient", "global"] = Field(
-        default="sampling", description="How costs are minimised."
+    method: Literal["sampling", "gradient", "global"] = default(
+        "sampling", "How costs are minimised."
     )
-    relaxation_time: NonNegativeDuration = Field(
-        default=0.5, description="Time in which the chosen velocity is reached, s."
+    relaxation_time: NonNegativeDuration = default(
+        0.5, "Time in which the chosen velocity is reached, s."
     )
-    samples: Literal["regular", "random"] = Field(
-        default="regular", description="Candidates on a fan, or random ones for each decision."
+    samples: Literal["regular", "random"] = default(
+        "regular", "Candidates on a fan, or random ones for each decision."
     )
-    base: Literal["zero", "current_velocity"] = Field(default="zero", description="Tip of the fan.")
-    direction: Literal["unit", "current_velocity", "preferred_velocity"] = Field(
-        default="preferred_velocity", description="Middle of the fan; unit is along x."
+    base: Literal["zero", "current_velocity"] = default("zero", "Tip of the fan.")
+    direction: Literal["unit", "current_velocity", "preferred_velocity"] = default(
+        "preferred_velocity", "Middle of the fan; unit is along x."
     )
-    radius: Literal["preferred_speed", "maximum_speed", "maximum_acceleration"] = Field(
-        default="preferred_speed",
-        description="Radius of the fan; the last is what one decision can reach.",
+    radius: Literal["preferred_speed", "maximum_speed", "maximum_acceleration"] = default(
+        "preferred_speed", "Radius of the fan; the last is what one decision can reach."
     )
-    angle: PositiveAngle = Field(default=3.141592653589793, description="Opening of the fan, rad.")
-    speeds: Annotated[int, Ge(1), Le(64)] = Field(
-        default=4, description="Speeds from zero to the radius of the fan."
-    )
-    angles: Annotated[int, Ge(1), Le(360)] = Field(default=19, description="Directions.")
-    random_samples: Annotated[int, Ge(1), Le(10000)] = Field(
-        default=100, description="Number of random candidates."
-    )
-    include_base: bool = Field(
-        default=True,
-        description="Whether the tip of a regular fan is a candidate, too.",
-    )
-    contact_stiffness: NonNegativeSteeringStiffness = Field(
-        default=62.5, description="Push between overlapping people and walls, 1/s^2."
+    angle: PositiveAngle = default(3.141592653589793, "Opening of the fan, rad.")
+    speeds: Annotated[int, Ge(1), Le(64)] = default(4, "Speeds from zero to the radius of the fan.")
+    angles: Annotated[int, Ge(1), Le(360)] = default(19, "Directions.")
+    random_samples: Annotated[int, Ge(1), Le(10000)] = default(100, "Number of random candidates.")
+    include_base: bool = default(True, "Whether the tip of a regular fan is a candidate, too.")
+    contact_stiffness: NonNegativeSteeringStiffness = default(
+        62.5, "Push between overlapping people and walls, 1/s^2."
     )
 
 

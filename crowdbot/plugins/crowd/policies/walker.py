@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from annotated_types import MinLen
 from pydantic import Field, field_validator
 
-from crowdbot.plugin import Component, CrowdPolicySpec, NonNegativeDuration, Quantity
+from crowdbot.plugin import Component, CrowdPolicySpec, NonNegativeDuration, Quantity, default
 
 _Velocity = Annotated[float, Quantity("speed")]
 #: Start time of a command, s; velocity x, y in the world frame, m/s.
@@ -27,10 +27,10 @@ class WalkerSpec(CrowdPolicySpec):
     """
 
     kind: Literal["walker"] = "walker"
-    recorded: Annotated[tuple[WalkCommand, ...], MinLen(1)] | None = Field(
-        default=None,
+    recorded: Annotated[tuple[WalkCommand, ...], MinLen(1)] | None = default(
+        None,
+        "Commands without a page: [t, vx, vy], each from t on, s, m/s, world frame.",
         strict=False,
-        description="Commands without a page: [t, vx, vy], each from t on, s, m/s, world frame.",
     )
 
     @field_validator("recorded")

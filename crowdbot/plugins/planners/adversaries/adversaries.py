@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from crowdbot.plugin import Component, NonNegativeDuration, PlannerRole, PlannerSpec
+from crowdbot.plugin import Component, NonNegativeDuration, PlannerRole, PlannerSpec, default
 
 _BUILD = "crowdbot.plugins.planners.adversaries.adversaries_build"
 
@@ -110,8 +110,8 @@ class DrawReplaySpec(AdversarySpec):
     """Recognises published crowds, and drives blindly with a start time that worked for them."""
 
     kind: Literal["draw_replay"] = "draw_replay"
-    memory: dict[Annotated[str, Field(max_length=32)], NonNegativeDuration] = Field(
-        default={}, description="Fingerprint of the first scan -> delay that worked, s."
+    memory: dict[Annotated[str, Field(max_length=32)], NonNegativeDuration] = default(
+        {}, "Fingerprint of the first scan -> delay that worked, s."
     )
 
 

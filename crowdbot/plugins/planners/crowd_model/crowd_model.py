@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
-
-from crowdbot.plugin import Component
+from crowdbot.plugin import Component, default
 from crowdbot.plugins.planners.shared.rungs import RungSpec
 
 
@@ -14,15 +12,13 @@ class CrowdModelSpec(RungSpec):
     """Follows the velocity that a person in its place would choose; knows the truth by default."""
 
     kind: Literal["crowd_model"] = "crowd_model"
-    tracks: Literal["lidar", "tracker", "truth"] = Field(
-        default="truth",
-        description="People: of the last scans, as the people tracker follows them, or the truth.",
+    tracks: Literal["lidar", "tracker", "truth"] = default(
+        "truth", "People: of the last scans, as the people tracker follows them, or the truth."
     )
-    localisation: Literal["odometry", "corrected", "truth"] = Field(
-        default="truth",
-        description="The robot's pose: by wheels, with the heading of walls, or the truth.",
+    localisation: Literal["odometry", "corrected", "truth"] = default(
+        "truth", "The robot's pose: by wheels, with the heading of walls, or the truth."
     )
-    crowd: str = Field(default="calibrated", description="Crowd as whose person the robot decides.")
+    crowd: str = default("calibrated", "Crowd as whose person the robot decides.")
 
 
 CROWD_MODEL = Component(

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
-
-from crowdbot.plugin import Component, PositiveDuration
+from crowdbot.plugin import Component, PositiveDuration, default
 from crowdbot.plugins.planners.people_mpc.people_mpc import PeopleMpcSpec, Weight, hurry_field
 
 
@@ -18,14 +16,12 @@ class CrowdPredictionSpec(PeopleMpcSpec):
 
     kind: Literal["crowd_prediction"] = "crowd_prediction"  # type: ignore[assignment]
     hurry: Weight = hurry_field(0.0)
-    crowd: str = Field(
-        default="calibrated", description="Crowd by whose engine people are predicted."
+    crowd: str = default("calibrated", "Crowd by whose engine people are predicted.")
+    settle_time: PositiveDuration = default(
+        1.0, "Time over which a person's wanted velocity is averaged, s."
     )
-    settle_time: PositiveDuration = Field(
-        default=1.0, description="Time over which a person's wanted velocity is averaged, s."
-    )
-    memory: PositiveDuration = Field(
-        default=5.0, description="Time over which errors of earlier predictions count, s."
+    memory: PositiveDuration = default(
+        5.0, "Time over which errors of earlier predictions count, s."
     )
 
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from pydantic import Field
 
-from crowdbot.plugin import Component, NonNegativeLength, PositiveAngle, PositiveLength
+from crowdbot.plugin import Component, NonNegativeLength, PositiveAngle, PositiveLength, default
 from crowdbot.plugins.planners.shared.rungs import RungSpec
 
 
@@ -15,17 +14,11 @@ class FollowTheGapSpec(RungSpec):
     """The weight of the gap is that of Sezer and Gokasan 2012 in units of the robot's size."""
 
     kind: Literal["follow_the_gap"] = "follow_the_gap"
-    view: PositiveAngle = Field(
-        default=1.6, le=3.1, description="Gaps are looked for this far to either side, rad."
-    )
-    reach: PositiveLength = Field(
-        default=3.0, description="Obstacles farther away play no part, m."
-    )
-    safety: NonNegativeLength = Field(
-        default=0.1, description="Least distance between robot and obstacle, m."
-    )
-    gap_weight: Annotated[float, Ge(0)] = Field(
-        default=1.0, description="Weight of the gap's direction at 1 m from the nearest obstacle."
+    view: PositiveAngle = default(1.6, "Gaps are looked for this far to either side, rad.", le=3.1)
+    reach: PositiveLength = default(3.0, "Obstacles farther away play no part, m.")
+    safety: NonNegativeLength = default(0.1, "Least distance between robot and obstacle, m.")
+    gap_weight: Annotated[float, Ge(0)] = default(
+        1.0, "Weight of the gap's direction at 1 m from the nearest obstacle."
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Le
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from crowdbot.plugin import (
     Component,
@@ -13,6 +13,7 @@ from crowdbot.plugin import (
     PlannerDocument,
     PositiveDuration,
     PositiveLength,
+    default,
 )
 from crowdbot.plugins.planners.shared.rungs import LadderSpec
 
@@ -26,26 +27,23 @@ class LinearBlendingSpec(LadderSpec):
     half: ClassVar[str] = "autonomy"
 
     kind: Literal["linear_blending"] = "linear_blending"
-    autonomy: PlannerDocument = Field(
-        default={"kind": "dwa"},
-        description="The planner to blend with: its document, its kind, or a file.",
+    autonomy: PlannerDocument = default(
+        {"kind": "dwa"}, "The planner to blend with: its document, its kind, or a file."
     )
-    arbitration: Literal["fixed", "goal", "obstacle"] = Field(
-        default="obstacle",
-        description="The planner's share: `share`, or rising from `least` to `most` towards the "
+    arbitration: Literal["fixed", "goal", "obstacle"] = default(
+        "obstacle",
+        "The planner's share: `share`, or rising from `least` to `most` towards the "
         "goal or an obstacle.",
     )
-    share: Share = Field(default=0.5, description="The planner's share if it is fixed.")
-    least: Share = Field(default=0.0, description="Its share farther away than `distance`.")
-    most: Share = Field(default=0.9, description="Its share nearer than `full_distance`.")
-    distance: PositiveLength = Field(
-        default=2.0, description="To the goal, or of the user's way to an obstacle, m."
+    share: Share = default(0.5, "The planner's share if it is fixed.")
+    least: Share = default(0.0, "Its share farther away than `distance`.")
+    most: Share = default(0.9, "Its share nearer than `full_distance`.")
+    distance: PositiveLength = default(2.0, "To the goal, or of the user's way to an obstacle, m.")
+    full_distance: NonNegativeLength = default(
+        0.3, "As `distance`, where the share is at its most, m."
     )
-    full_distance: NonNegativeLength = Field(
-        default=0.3, description="As `distance`, where the share is at its most, m."
-    )
-    look_ahead: PositiveDuration = Field(
-        default=1.5, description="Obstacles count that the user's way comes near to in it, s."
+    look_ahead: PositiveDuration = default(
+        1.5, "Obstacles count that the user's way comes near to in it, s."
     )
 
     @model_validator(mode="after")

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from crowdbot.plugin import Component, NonNegativeLength, PositiveDuration, PositiveLength
+from crowdbot.plugin import Component, NonNegativeLength, PositiveDuration, PositiveLength, default
 from crowdbot.plugins.planners.shared.rungs import RungSpec
 
 
@@ -14,21 +14,16 @@ class NavgroundSpec(RungSpec):
     """Needs ``crowdbot[navground]``; defaults are those of crowdbot's `orca`, where it has them."""
 
     kind: Literal["navground"] = "navground"
-    behavior: Literal["ORCA", "HL", "HRVO", "SocialForce", "Dummy"] = Field(
-        default="ORCA", description="Name of the library's behaviour; `Dummy` drives straight on."
+    behavior: Literal["ORCA", "HL", "HRVO", "SocialForce", "Dummy"] = default(
+        "ORCA", "Name of the library's behaviour; `Dummy` drives straight on."
     )
-    view: PositiveLength = Field(
-        default=5.0, description="People and points farther than this are not shown to it, m."
+    view: PositiveLength = default(
+        5.0, "People and points farther than this are not shown to it, m."
     )
-    safety_margin: NonNegativeLength = Field(
-        default=0.05, description="Added to the robot's radius, m."
-    )
-    time_horizon: PositiveDuration = Field(
-        default=2.0, description="Of ORCA: time for which nothing is touched, s."
-    )
-    settings: dict[Annotated[str, Field(max_length=32)], bool | int | float] = Field(
-        default={},
-        description="Other properties of the behaviour by their names there, such as `eta` of HL.",
+    safety_margin: NonNegativeLength = default(0.05, "Added to the robot's radius, m.")
+    time_horizon: PositiveDuration = default(2.0, "Of ORCA: time for which nothing is touched, s.")
+    settings: dict[Annotated[str, Field(max_length=32)], bool | int | float] = default(
+        {}, "Other properties of the behaviour by their names there, such as `eta` of HL."
     )
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Le
-from pydantic import Field
 
 from crowdbot.plugin import (
     Component,
@@ -13,6 +12,7 @@ from crowdbot.plugin import (
     NonNegativeLength,
     PlannerRole,
     PositiveLength,
+    default,
 )
 from crowdbot.plugins.planners.crowd_prediction.crowd_prediction import CrowdPredictionSpec
 from crowdbot.plugins.planners.people_mpc.people_mpc import Weight, hurry_field
@@ -30,21 +30,15 @@ class OracleSpec(CrowdPredictionSpec):
     privileged: ClassVar[bool] = True
 
     kind: Literal["oracle"] = "oracle"  # type: ignore[assignment]
-    tracks: Literal["truth"] = Field(default="truth", description="People: the truth.")
-    localisation: Literal["truth"] = Field(
-        default="truth", description="The robot's pose: the truth."
-    )
-    speeds: Annotated[int, Ge(2), Le(16)] = Field(default=6, description="First speeds.")
-    yaw_rates: Annotated[int, Ge(3), Le(32)] = Field(default=15, description="First yaw rates.")
-    margin: NonNegativeLength = Field(
-        default=0.03, description="Clearance below which a plan counts as a hit, m."
-    )
-    comfort: PositiveLength = Field(
-        default=0.15, description="Clearance above which more is no better, m."
-    )
-    rehearse: NonNegativeDuration = Field(
-        default=2.4,
-        description="A plan is first tried beside the crowd of the run for this time, and another "
+    tracks: Literal["truth"] = default("truth", "People: the truth.")
+    localisation: Literal["truth"] = default("truth", "The robot's pose: the truth.")
+    speeds: Annotated[int, Ge(2), Le(16)] = default(6, "First speeds.")
+    yaw_rates: Annotated[int, Ge(3), Le(32)] = default(15, "First yaw rates.")
+    margin: NonNegativeLength = default(0.03, "Clearance below which a plan counts as a hit, m.")
+    comfort: PositiveLength = default(0.15, "Clearance above which more is no better, m.")
+    rehearse: NonNegativeDuration = default(
+        2.4,
+        "A plan is first tried beside the crowd of the run for this time, and another "
         "one driven if it touches someone or drives someone aside, s; 0: never.",
     )
     hurry: Weight = hurry_field(0.0)

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le
-from pydantic import Field
 
-from crowdbot.plugin import Component, NonNegativeLength, PositiveDuration
+from crowdbot.plugin import Component, NonNegativeLength, PositiveDuration, default
 from crowdbot.plugins.planners.shared.rungs import RungSpec
 
 
@@ -15,21 +14,18 @@ class OrcaPlannerSpec(RungSpec):
     """People are assumed to do their share of each evasion; walls do nothing."""
 
     kind: Literal["orca"] = "orca"
-    time_horizon: PositiveDuration = Field(
-        default=2.0, description="Time for which no person is touched, s."
+    time_horizon: PositiveDuration = default(2.0, "Time for which no person is touched, s.")
+    obstacle_horizon: PositiveDuration = default(
+        1.0, "Time for which nothing that stands is touched, s."
     )
-    obstacle_horizon: PositiveDuration = Field(
-        default=1.0, description="Time for which nothing that stands is touched, s."
+    share: Annotated[float, Gt(0), Le(1)] = default(
+        0.5, "The robot's share of an evasion; 0.5: people take the other half."
     )
-    share: Annotated[float, Gt(0), Le(1)] = Field(
-        default=0.5, description="The robot's share of an evasion; 0.5: people take the other half."
+    neighbours: Annotated[int, Ge(1), Le(200)] = default(
+        20, "People that are considered, the nearest first."
     )
-    neighbours: Annotated[int, Ge(1), Le(200)] = Field(
-        default=20, description="People that are considered, the nearest first."
-    )
-    tracking_error: NonNegativeLength = Field(
-        default=0.05,
-        description="How far a robot that cannot go sideways may be off the chosen velocity, m.",
+    tracking_error: NonNegativeLength = default(
+        0.05, "How far a robot that cannot go sideways may be off the chosen velocity, m."
     )
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Le
-from pydantic import Field
 
 from crowdbot.plugin import (
     Component,
@@ -14,6 +13,7 @@ from crowdbot.plugin import (
     PositiveFrequency,
     PositiveLength,
     PositiveSpeed,
+    default,
 )
 from crowdbot.plugins.planners.shared.rungs import RungSpec
 
@@ -22,31 +22,27 @@ class RppSpec(RungSpec):
     """Defaults are those of nav2's regulated pure pursuit controller; speeds are the robot's."""
 
     kind: Literal["rpp"] = "rpp"
-    look_ahead_time: PositiveDuration = Field(
-        default=1.5, description="It aims at the point of the way this far ahead at its speed, s."
+    look_ahead_time: PositiveDuration = default(
+        1.5, "It aims at the point of the way this far ahead at its speed, s."
     )
-    look_ahead_min: PositiveLength = Field(default=0.3, description="Least look-ahead, m.")
-    look_ahead_max: PositiveLength = Field(default=0.9, description="Largest look-ahead, m.")
-    turn_in_place: PositiveAngle = Field(
-        default=0.785, description="Heading error above which the robot turns on the spot, rad."
+    look_ahead_min: PositiveLength = default(0.3, "Least look-ahead, m.")
+    look_ahead_max: PositiveLength = default(0.9, "Largest look-ahead, m.")
+    turn_in_place: PositiveAngle = default(
+        0.785, "Heading error above which the robot turns on the spot, rad."
     )
-    turn_gain: PositiveFrequency = Field(
-        default=2.0, description="Yaw rate per heading error on the spot, 1/s."
+    turn_gain: PositiveFrequency = default(2.0, "Yaw rate per heading error on the spot, 1/s.")
+    bend_radius: PositiveLength = default(
+        0.9, "Slower in bends with a smaller radius than this, m."
     )
-    bend_radius: PositiveLength = Field(
-        default=0.9, description="Slower in bends with a smaller radius than this, m."
+    min_speed: PositiveSpeed = default(
+        0.25, "Bends and obstacles do not slow it below this speed, m/s."
     )
-    min_speed: PositiveSpeed = Field(
-        default=0.25, description="Bends and obstacles do not slow it below this speed, m/s."
+    proximity: PositiveLength = default(0.6, "Slower with an obstacle nearer than this, m.")
+    proximity_gain: Annotated[float, Ge(0), Le(1)] = default(
+        1.0, "Share of the gap, of `proximity`, to which it slows."
     )
-    proximity: PositiveLength = Field(
-        default=0.6, description="Slower with an obstacle nearer than this, m."
-    )
-    proximity_gain: Annotated[float, Ge(0), Le(1)] = Field(
-        default=1.0, description="Share of the gap, of `proximity`, to which it slows."
-    )
-    collision_time: PositiveDuration = Field(
-        default=1.0, description="It stops if its arc hits something within this time, s."
+    collision_time: PositiveDuration = default(
+        1.0, "It stops if its arc hits something within this time, s."
     )
 
 

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
-from pydantic import Field
-
 from crowdbot.plugin import (
     Component,
     NonNegativeDuration,
     NonNegativeLength,
     PlannerDocument,
+    default,
 )
 from crowdbot.plugins.planners.shared.rungs import LadderSpec
 
@@ -22,17 +21,13 @@ class SafetyStopSpec(LadderSpec):
     half: ClassVar[str] = "autonomy"
 
     kind: Literal["safety_stop"] = "safety_stop"
-    autonomy: PlannerDocument | None = Field(
-        default=None,
-        description="Planner that drives while the user's command is not safe: its document, its "
+    autonomy: PlannerDocument | None = default(
+        None,
+        "Planner that drives while the user's command is not safe: its document, its "
         "kind, or a file; unset: the robot brakes.",
     )
-    reaction_time: NonNegativeDuration = Field(
-        default=0.2, description="Driven before braking sets in, s."
-    )
-    margin: NonNegativeLength = Field(
-        default=0.1, description="Free space that is kept around the robot, m."
-    )
+    reaction_time: NonNegativeDuration = default(0.2, "Driven before braking sets in, s.")
+    margin: NonNegativeLength = default(0.1, "Free space that is kept around the robot, m.")
 
 
 SAFETY_STOP = Component(

@@ -13,6 +13,7 @@ from crowdbot.plugin import (
     NonNegativeLength,
     PositiveDuration,
     PositiveLength,
+    default,
 )
 from crowdbot.plugins.planners.shared.rungs import RungSpec
 
@@ -23,32 +24,27 @@ class ValueSearchSpec(RungSpec):
     weights: Asset = Field(
         description="File of weights: PyTorch's `.pth` of a `state_dict`, or numpy's `.npz`."
     )
-    kinematics: Literal["holonomic", "unicycle"] = Field(
-        default="holonomic", description="Actions: velocities, or speeds and turns within 45°."
+    kinematics: Literal["holonomic", "unicycle"] = default(
+        "holonomic", "Actions: velocities, or speeds and turns within 45°."
     )
-    speed_samples: Annotated[int, Ge(1), Le(20)] = Field(
-        default=5, description="Speeds, denser near 0."
+    speed_samples: Annotated[int, Ge(1), Le(20)] = default(5, "Speeds, denser near 0.")
+    rotation_samples: Annotated[int, Ge(1), Le(64)] = default(16, "Directions.")
+    gamma: Annotated[float, Gt(0), Le(1)] = default(
+        0.9, "Discount factor of the value, for each metre at full speed."
     )
-    rotation_samples: Annotated[int, Ge(1), Le(64)] = Field(default=16, description="Directions.")
-    gamma: Annotated[float, Gt(0), Le(1)] = Field(
-        default=0.9, description="Discount factor of the value, for each metre at full speed."
+    step_time: PositiveDuration = default(0.25, "Time between decisions, and of the look ahead, s.")
+    discomfort: NonNegativeLength = default(
+        0.2, "Clearance to people below which there is a penalty, m."
     )
-    step_time: PositiveDuration = Field(
-        default=0.25, description="Time between decisions, and of the look ahead, s."
+    person_radius: NonNegativeLength = default(
+        0.3, "Radius of people, as the network sees them, m."
     )
-    discomfort: NonNegativeLength = Field(
-        default=0.2, description="Clearance to people below which there is a penalty, m."
+    neighbours: Annotated[int, Ge(1), Le(50)] = default(
+        5, "People that the network sees, the nearest first."
     )
-    person_radius: NonNegativeLength = Field(
-        default=0.3, description="Radius of people, as the network sees them, m."
+    goal_distance: PositiveLength = default(
+        8.0, "Goals farther than this are shown to the network here, m."
     )
-    neighbours: Annotated[int, Ge(1), Le(50)] = Field(
-        default=5, description="People that the network sees, the nearest first."
-    )
-    goal_distance: PositiveLength = Field(
-        default=8.0, description="Goals farther than this are shown to the network here, m."
-    )
-    wall_time: NonNegativeDuration = Field(
-        default=1.0,
-        description="Actions that would touch what stands in this time are left out, s; 0: none.",
+    wall_time: NonNegativeDuration = default(
+        1.0, "Actions that would touch what stands in this time are left out, s; 0: none."
     )

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Gt, Le
-from pydantic import Field
 
-from crowdbot.plugin import NonNegativeLength, PlannerSpec, PositiveLength
+from crowdbot.plugin import NonNegativeLength, PlannerSpec, PositiveLength, default
 from crowdbot.plugins.planners.shared.near_sensors import NEAR_SENSORS, near_sensors_field
 
 
@@ -19,20 +18,16 @@ class LadderSpec(PlannerSpec):
 
     needs: ClassVar[tuple[str, ...]] = ("lidar",)
 
-    tracks: Literal["lidar", "tracker", "truth"] = Field(
-        default="tracker",
-        description="People: of the last scans, as the people tracker follows them, or the truth.",
+    tracks: Literal["lidar", "tracker", "truth"] = default(
+        "tracker", "People: of the last scans, as the people tracker follows them, or the truth."
     )
-    localisation: Literal["odometry", "corrected", "truth"] = Field(
-        default="corrected",
-        description="The robot's pose: by wheels, with the heading of walls, or the truth.",
+    localisation: Literal["odometry", "corrected", "truth"] = default(
+        "corrected", "The robot's pose: by wheels, with the heading of walls, or the truth."
     )
-    robot_radius: PositiveLength | None = Field(
-        default=None, description="Radius of the robot, m; unset: the robot's own outline."
+    robot_radius: PositiveLength | None = default(
+        None, "Radius of the robot, m; unset: the robot's own outline."
     )
-    person_radius: NonNegativeLength = Field(
-        default=0.25, description="Disc that is kept clear around people, m."
-    )
+    person_radius: NonNegativeLength = default(0.25, "Disc that is kept clear around people, m.")
 
     near_sensors: bool = near_sensors_field()
 
@@ -50,6 +45,6 @@ class LadderSpec(PlannerSpec):
 class RungSpec(LadderSpec):
     """A planner on the ladder of sensing that drives the robot, without a user."""
 
-    speed: Annotated[float, Gt(0), Le(1)] = Field(
-        default=1.0, description="Cruising speed as a fraction of the robot's largest."
+    speed: Annotated[float, Gt(0), Le(1)] = default(
+        1.0, "Cruising speed as a fraction of the robot's largest."
     )

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from pydantic import Field
 
-from crowdbot.plugin import Component, NonNegativeLength, PositiveDuration, PositiveLength
+from crowdbot.plugin import Component, NonNegativeLength, PositiveDuration, PositiveLength, default
 from crowdbot.plugins.planners.shared.rungs import RungSpec
 
 
@@ -15,24 +14,17 @@ class SocialMomentumSpec(RungSpec):
     """Mavrogiannis, Thomason, Knepper 2018. The paper leaves all values to the user."""
 
     kind: Literal["social_momentum"] = "social_momentum"
-    momentum: Annotated[float, Ge(0)] = Field(
-        default=0.2, description="Weight of the momentum beside progress, 1/m; 0: only progress."
+    momentum: Annotated[float, Ge(0)] = default(
+        0.2, "Weight of the momentum beside progress, 1/m; 0: only progress."
     )
-    horizon: PositiveDuration = Field(
-        default=2.0, description="Velocities that touch something earlier are not chosen, s."
+    horizon: PositiveDuration = default(
+        2.0, "Velocities that touch something earlier are not chosen, s."
     )
-    reach: PositiveLength = Field(
-        default=5.0, description="People ahead who are farther away play no part, m."
+    reach: PositiveLength = default(5.0, "People ahead who are farther away play no part, m.")
+    directions: int = default(
+        31, "Directions to choose from, over the half circle ahead.", ge=5, le=181
     )
-    directions: int = Field(
-        default=31,
-        ge=5,
-        le=181,
-        description="Directions to choose from, over the half circle ahead.",
-    )
-    safety: NonNegativeLength = Field(
-        default=0.05, description="Least distance between robot and obstacle, m."
-    )
+    safety: NonNegativeLength = default(0.05, "Least distance between robot and obstacle, m.")
 
 
 SOCIAL_MOMENTUM = Component(

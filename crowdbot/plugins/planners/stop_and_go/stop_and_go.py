@@ -8,7 +8,6 @@ from __future__ import annotations
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Gt, Le
-from pydantic import Field
 
 from crowdbot.plugin import (
     Component,
@@ -19,6 +18,7 @@ from crowdbot.plugin import (
     PositiveAngle,
     PositiveFrequency,
     PositiveLength,
+    default,
 )
 
 
@@ -29,44 +29,39 @@ class StopAndGoSpec(PlannerSpec):
     needs: ClassVar[tuple[str, ...]] = ("lidar",)
 
     kind: Literal["stop_and_go"] = "stop_and_go"
-    robot_radius: PositiveLength | None = Field(
-        default=None, description="Radius of the robot, m; unset: the robot's own outline."
+    robot_radius: PositiveLength | None = default(
+        None, "Radius of the robot, m; unset: the robot's own outline."
     )
-    person_radius: NonNegativeLength = Field(
-        default=0.25, description="Disc that is kept clear around legs; 0: legs alone, m."
+    person_radius: NonNegativeLength = default(
+        0.25, "Disc that is kept clear around legs; 0: legs alone, m."
     )
-    speed: Annotated[float, Gt(0), Le(1)] = Field(
-        default=1.0, description="Cruising speed as a fraction of the robot's largest."
+    speed: Annotated[float, Gt(0), Le(1)] = default(
+        1.0, "Cruising speed as a fraction of the robot's largest."
     )
-    heading_gain: PositiveFrequency = Field(
-        default=2.0, description="Yaw rate per heading error, 1/s."
+    heading_gain: PositiveFrequency = default(2.0, "Yaw rate per heading error, 1/s.")
+    turn_in_place: PositiveAngle = default(
+        0.785, "Heading error above which the robot turns on the spot, rad."
     )
-    turn_in_place: PositiveAngle = Field(
-        default=0.785, description="Heading error above which the robot turns on the spot, rad."
+    side_margin: NonNegativeLength = default(0.1, "Free space beside the robot, m.")
+    front_margin: NonNegativeLength = default(
+        0.1, "Free space that remains before the robot when it stands, m."
     )
-    side_margin: NonNegativeLength = Field(
-        default=0.1, description="Free space beside the robot, m."
+    reaction_time: NonNegativeDuration = default(
+        0.3, "Driven at full speed before braking sets in, s."
     )
-    front_margin: NonNegativeLength = Field(
-        default=0.1, description="Free space that remains before the robot when it stands, m."
+    look_back: NonNegativeDuration = default(
+        0.3, "Age of the scan that shows who walks; 0 takes all as still, s."
     )
-    reaction_time: NonNegativeDuration = Field(
-        default=0.3, description="Driven at full speed before braking sets in, s."
+    most_aside: Annotated[float, Ge(0), Le(1.2)] = default(
+        0.785, "How far to either side it looks for room (0 goes straight), rad."
     )
-    look_back: NonNegativeDuration = Field(
-        default=0.3, description="Age of the scan that shows who walks; 0 takes all as still, s."
-    )
-    most_aside: Annotated[float, Ge(0), Le(1.2)] = Field(
-        default=0.785,
-        description="How far to either side it looks for room (0 goes straight), rad.",
-    )
-    look_ahead: NonNegativeDuration = Field(
-        default=3.0,
-        description="Drives where no one will be met for this long, if everyone continues as they "
+    look_ahead: NonNegativeDuration = default(
+        3.0,
+        "Drives where no one will be met for this long, if everyone continues as they "
         "do; 0: only towards where it may drive fastest now, s.",
     )
-    aside_reach: NonNegativeLength = Field(
-        default=1.0, description="Nearer to the goal than this it goes straight, m."
+    aside_reach: NonNegativeLength = default(
+        1.0, "Nearer to the goal than this it goes straight, m."
     )
 
 

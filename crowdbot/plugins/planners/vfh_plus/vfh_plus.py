@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Le
-from pydantic import Field
 
-from crowdbot.plugin import Component, NonNegativeLength, PositiveLength
+from crowdbot.plugin import Component, NonNegativeLength, PositiveLength, default
 from crowdbot.plugins.planners.shared.rungs import RungSpec
 
 Weight = Annotated[float, Ge(0)]
@@ -17,30 +16,21 @@ class VfhPlusSpec(RungSpec):
     """Weights of Ulrich and Borenstein 1998, section 5: 5, 2, 2; the first exceeds their sum."""
 
     kind: Literal["vfh_plus"] = "vfh_plus"
-    sectors: Annotated[int, Ge(24), Le(360)] = Field(
-        default=72, description="Sectors of the full turn; 72 are 5 degrees each."
+    sectors: Annotated[int, Ge(24), Le(360)] = default(
+        72, "Sectors of the full turn; 72 are 5 degrees each."
     )
-    window: PositiveLength = Field(
-        default=2.5, description="Obstacles farther away play no part, m."
+    window: PositiveLength = default(2.5, "Obstacles farther away play no part, m.")
+    safety: NonNegativeLength = default(0.1, "Least distance between robot and obstacle, m.")
+    low: Weight = default(
+        0.15, "Share of the density of touching below which a closed sector opens."
     )
-    safety: NonNegativeLength = Field(
-        default=0.1, description="Least distance between robot and obstacle, m."
+    high: Weight = default(0.3, "Share of that density above which an open sector closes.")
+    wide: Annotated[int, Ge(2), Le(180)] = default(
+        16, "An opening of more sectors is wide: it is passed beside an edge."
     )
-    low: Weight = Field(
-        default=0.15,
-        description="Share of the density of touching below which a closed sector opens.",
-    )
-    high: Weight = Field(
-        default=0.3, description="Share of that density above which an open sector closes."
-    )
-    wide: Annotated[int, Ge(2), Le(180)] = Field(
-        default=16, description="An opening of more sectors is wide: it is passed beside an edge."
-    )
-    goal_weight: Weight = Field(default=5.0, description="Weight of the angle to the goal.")
-    heading_weight: Weight = Field(default=2.0, description="Weight of the angle to the heading.")
-    change_weight: Weight = Field(
-        default=2.0, description="Weight of the angle to the last choice."
-    )
+    goal_weight: Weight = default(5.0, "Weight of the angle to the goal.")
+    heading_weight: Weight = default(2.0, "Weight of the angle to the heading.")
+    change_weight: Weight = default(2.0, "Weight of the angle to the last choice.")
 
 
 VFH_PLUS = Component(

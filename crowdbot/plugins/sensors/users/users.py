@@ -21,6 +21,7 @@ from crowdbot.plugin import (
     PositiveLength,
     PositiveSpeed,
     SensorSpec,
+    default,
 )
 
 #: A position x, y, m.
@@ -38,38 +39,26 @@ class UserSpec(SensorSpec):
     Direction by the steering dynamics of Fajen and Warren, speed by the gap ahead (Moussaïd).
     """
 
-    rate: PositiveFrequency = Field(default=16.0, le=128, description="Readings per second, Hz.")
-    goal: Goal | None = Field(
-        default=None, description="Where the user wants to go, m; unset: the task's goal."
+    rate: PositiveFrequency = default(16.0, "Readings per second, Hz.", le=128)
+    goal: Goal | None = default(None, "Where the user wants to go, m; unset: the task's goal.")
+    max_speed: PositiveSpeed | None = default(
+        None, "Speed of the stick fully ahead, m/s; unset: the robot's."
     )
-    max_speed: PositiveSpeed | None = Field(
-        default=None, description="Speed of the stick fully ahead, m/s; unset: the robot's."
+    max_yaw_rate: PositiveAngularSpeed | None = default(
+        None, "Yaw rate of the stick fully aside, rad/s; unset: the robot's."
     )
-    max_yaw_rate: PositiveAngularSpeed | None = Field(
-        default=None, description="Yaw rate of the stick fully aside, rad/s; unset: the robot's."
+    sight: NonNegativeLength = default(
+        4.0, "People and walls nearer than this count, m; 0: it sees none."
     )
-    sight: NonNegativeLength = Field(
-        default=4.0, description="People and walls nearer than this count, m; 0: it sees none."
+    gap_time: PositiveDuration = default(
+        0.5, "It drives no faster than the gap ahead in this time, s."
     )
-    gap_time: PositiveDuration = Field(
-        default=0.5, description="It drives no faster than the gap ahead in this time, s."
-    )
-    slow_distance: PositiveLength = Field(
-        default=1.5, description="Nearer to the goal it slows down, m."
-    )
-    noise: Share = Field(
-        default=0.0, description="Standard deviation of the hand, a fraction of full deflection."
-    )
-    proportional_noise: Share = Field(
-        default=0.0, description="The same, as a fraction of the deflection."
-    )
-    noise_time: PositiveDuration = Field(
-        default=0.3, description="Correlation time of the hand's error, s."
-    )
-    delay: Delay = Field(default=0.0, description="From seeing to the stick's deflection, s.")
-    bias: Angle = Field(
-        default=0.0, description="All directions seem turned this far to the left, rad."
-    )
+    slow_distance: PositiveLength = default(1.5, "Nearer to the goal it slows down, m.")
+    noise: Share = default(0.0, "Standard deviation of the hand, a fraction of full deflection.")
+    proportional_noise: Share = default(0.0, "The same, as a fraction of the deflection.")
+    noise_time: PositiveDuration = default(0.3, "Correlation time of the hand's error, s.")
+    delay: Delay = default(0.0, "From seeing to the stick's deflection, s.")
+    bias: Angle = default(0.0, "All directions seem turned this far to the left, rad.")
 
 
 class GoalDirectedUserSpec(UserSpec):
@@ -82,28 +71,22 @@ class NoisyUserSpec(UserSpec):
     """A user with a shaky hand."""
 
     kind: Literal["noisy_user"] = "noisy_user"
-    noise: Share = Field(
-        default=0.2, description="Standard deviation of the hand, a fraction of full deflection."
-    )
-    proportional_noise: Share = Field(
-        default=0.2, description="The same, as a fraction of the deflection."
-    )
+    noise: Share = default(0.2, "Standard deviation of the hand, a fraction of full deflection.")
+    proportional_noise: Share = default(0.2, "The same, as a fraction of the deflection.")
 
 
 class DelayedUserSpec(UserSpec):
     """A user who reacts late, or drives over a connection with delay."""
 
     kind: Literal["delayed_user"] = "delayed_user"
-    delay: Delay = Field(default=0.6, description="From seeing to the stick's deflection, s.")
+    delay: Delay = default(0.6, "From seeing to the stick's deflection, s.")
 
 
 class BiasedUserSpec(UserSpec):
     """A user whose sense of straight ahead is rotated, as in spatial neglect."""
 
     kind: Literal["biased_user"] = "biased_user"
-    bias: Angle = Field(
-        default=0.2618, description="All directions seem turned this far to the left, rad."
-    )
+    bias: Angle = default(0.2618, "All directions seem turned this far to the left, rad.")
 
 
 class OneSwitchUserSpec(UserSpec):
@@ -115,20 +98,14 @@ class OneSwitchUserSpec(UserSpec):
     """
 
     kind: Literal["one_switch_user"] = "one_switch_user"
-    scan_period: PositiveDuration = Field(
-        default=1.0, description="Each mark is lit for this long, s."
+    scan_period: PositiveDuration = default(1.0, "Each mark is lit for this long, s.")
+    reaction: PositiveDuration = default(0.65, "From the reason for a press to the press, mean, s.")
+    reaction_spread: Share = default(
+        0.2, "Standard deviation of the reaction, a fraction of its mean."
     )
-    reaction: PositiveDuration = Field(
-        default=0.65, description="From the reason for a press to the press, mean, s."
-    )
-    reaction_spread: Share = Field(
-        default=0.2, description="Standard deviation of the reaction, a fraction of its mean."
-    )
-    tolerance: PositiveAngle = Field(
-        default=0.2618, description="The goal may be this far off the heading, rad."
-    )
-    deflection: Annotated[float, Gt(0), Le(1)] = Field(
-        default=0.5, description="Deflection of the stick at each mark, as a fraction."
+    tolerance: PositiveAngle = default(0.2618, "The goal may be this far off the heading, rad.")
+    deflection: Annotated[float, Gt(0), Le(1)] = default(
+        0.5, "Deflection of the stick at each mark, as a fraction."
     )
 
 
@@ -139,26 +116,22 @@ class FatiguedUserSpec(UserSpec):
     """
 
     kind: Literal["fatigued_user"] = "fatigued_user"
-    time_on_task: NonNegativeDuration = Field(
-        default=1800.0, description="Time for which it has driven when the run begins, s."
+    time_on_task: NonNegativeDuration = default(
+        1800.0, "Time for which it has driven when the run begins, s."
     )
-    tiring_time: PositiveDuration = Field(
-        default=900.0, description="After this time it has reached 63 % of its tiredness, s."
+    tiring_time: PositiveDuration = default(
+        900.0, "After this time it has reached 63 % of its tiredness, s."
     )
-    noise: Share = Field(
-        default=0.08, description="Standard deviation of a rested hand, a fraction of full."
+    noise: Share = default(0.08, "Standard deviation of a rested hand, a fraction of full.")
+    tired_noise: Annotated[float, Ge(1), Le(10)] = default(2.0, "Factor of the noise when tired.")
+    delay: Delay = default(0.25, "Delay of the rested user, s.")
+    tired_delay: Annotated[NonNegativeDuration, Le(3.0)] = default(
+        0.25, "Additional delay when tired, s."
     )
-    tired_noise: Annotated[float, Ge(1), Le(10)] = Field(
-        default=2.0, description="Factor of the noise when tired."
+    lapses: Annotated[float, Ge(0), Le(1)] = default(
+        0.05, "Lapses per second when tired, 1/s: the stick stays as it is."
     )
-    delay: Delay = Field(default=0.25, description="Delay of the rested user, s.")
-    tired_delay: Annotated[NonNegativeDuration, Le(3.0)] = Field(
-        default=0.25, description="Additional delay when tired, s."
-    )
-    lapses: Annotated[float, Ge(0), Le(1)] = Field(
-        default=0.05, description="Lapses per second when tired, 1/s: the stick stays as it is."
-    )
-    lapse_time: PositiveDuration = Field(default=1.0, description="Length of a lapse, s.")
+    lapse_time: PositiveDuration = default(1.0, "Length of a lapse, s.")
 
 
 #: Why some users' first reading is the same with and without people.

@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from annotated_types import Ge
-from pydantic import Field
 
 from crowdbot.plugin import (
     Component,
@@ -19,6 +18,7 @@ from crowdbot.plugin import (
     PositiveLength,
     PositiveSpeed,
     Range,
+    default,
 )
 
 
@@ -26,15 +26,14 @@ class TtcaDcaSpec(CostFunctionSpec):
     """Mid-term collision avoidance and goal seeking."""
 
     kind: Literal["ttca_dca"] = "ttca_dca"
-    weight: Annotated[float, Ge(0)] = Field(default=1.0, description="Factor of the cost.")
-    range: Range = Field(default=Range(), description="Which neighbours count.")
-    sigma_ttca: PositiveDuration = Field(default=1.0, description="Spread in time, s.")
-    sigma_dca: PositiveLength = Field(default=0.3, description="Spread in distance, m.")
-    sigma_angle_goal: PositiveAngle = Field(default=2.0, description="Spread in heading, rad.")
-    sigma_speed_goal: PositiveSpeed = Field(default=2.0, description="Spread in speed, m/s.")
-    walls: bool = Field(
-        default=False,
-        description="Whether the nearest point of each wall counts as a neighbour that stands.",
+    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
+    range: Range = default(Range(), "Which neighbours count.")
+    sigma_ttca: PositiveDuration = default(1.0, "Spread in time, s.")
+    sigma_dca: PositiveLength = default(0.3, "Spread in distance, m.")
+    sigma_angle_goal: PositiveAngle = default(2.0, "Spread in heading, rad.")
+    sigma_speed_goal: PositiveSpeed = default(2.0, "Spread in speed, m/s.")
+    walls: bool = default(
+        False, "Whether the nearest point of each wall counts as a neighbour that stands."
     )
 
 
