@@ -26,7 +26,7 @@ from crowdbot.plugin import (
     Spec,
     default,
 )
-from crowdbot.plugins.robots.urdf_names import urdf_names
+from crowdbot.plugins.robots.urdf_names import urdf_names, weightless
 
 Torque = Annotated[float, Gt(0)]
 WheelJoints = str | Annotated[tuple[str, ...], Field(strict=False), MinLen(1)]
@@ -149,6 +149,22 @@ class UrdfSpec(UrdfFields):
 
     kind: Literal["urdf"] = "urdf"
     drive: DrivenWheels = Field(description="The driven wheels of a differential drive.")
+
+    @model_validator(mode="after")
+    def _parts_weigh(self) -> UrdfSpec:
+        if not self.file.is_found:
+            return self
+        wheels = [side[0] for side in self.drive.sides]
+        try:
+            found = sorted(weightless(self.file.file, wheels))
+        except (InputError, OSError):  # told with the file
+            return self
+        if found:
+            raise ValueError(
+                f"link '{found[0]}' weighs nothing, with all that is fixed to it; a part that "
+                "moves needs <inertial> with <mass> and <inertia>"
+            )
+        return self
 
     def named(self) -> Iterator[tuple[DescribedPart, str, tuple[str | int, ...]]]:
         """Yield the base, and the joints that are held and driven."""

@@ -11,8 +11,12 @@ from crowdbot.core.scenarios.library import open_spec
 from crowdbot.errors import SpecError
 
 REGISTRY = discover(allow=())
-URDF = """\
-<robot name="bot"><link name="base_link"/><link name="left"/><link name="right"/>
+HEAVY = '<inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial>'
+URDF = f"""\
+<robot name="bot"><link name="base_link">{HEAVY}</link><link name="left">{HEAVY}</link>
+<link name="right"/><link name="hub">{HEAVY}</link><joint name="cap" type="fixed">
+<parent link="right"/><child link="hub"/></joint><joint name="mount" type="fixed">
+<parent link="base_link"/><child link="laser"/></joint>
 <link name="laser"/><joint name="left_wheel" type="continuous"><parent link="base_link"/>
 <child link="left"/></joint><joint name="right_wheel" type="continuous">
 <parent link="base_link"/><child link="right"/></joint></robot>
@@ -64,6 +68,23 @@ def test_a_name_that_is_not_there(tmp_path: Path, written: str, wrong: str, expe
     assert problem.code == "E130"
     assert expected in problem.message
     assert expected.split("'")[1] in document.splitlines()[problem.mark.line]
+
+
+@pytest.mark.parametrize(
+    ("light", "named"),
+    [
+        (["left"], "left"), (["base_link"], "base_link"), (["hub"], "right"),
+        (["base_link", "left", "hub"], "base_link"),
+    ],
+)  # fmt: skip
+def test_parts_that_move_and_weigh_nothing(tmp_path: Path, light: list[str], named: str) -> None:
+    urdf = URDF
+    for name in light:
+        urdf = urdf.replace(f'<link name="{name}">{HEAVY}</link>', f'<link name="{name}"/>')
+    with pytest.raises(SpecError) as info:
+        opened(tmp_path, DOCUMENT, urdf)
+    (problem,) = info.value.diagnostics
+    assert f"link '{named}' weighs nothing, with all that is fixed to it" in problem.message
 
 
 def test_a_byte_order_mark_hides_nothing(tmp_path: Path) -> None:
