@@ -16,7 +16,7 @@ from crowdbot.plugins.metrics.parameters import (
     UsualAcceleration,
 )
 
-declare = partial(declare_metric, category="burden")
+declare = partial(declare_metric, category="burden", better="lower")
 
 
 class PushWorkSpec(MetricSpec):
@@ -37,7 +37,6 @@ PUSH_WORK = declare(
     symbol="W_push",
     spec_version=4,
     unit="J",
-    better="lower",
     variants={
         "rate": {"minimum": 0.0, "unit": "J/m", "mass_exponent": 1, "rate_over": "way"},
         "forced": {"minimum": 0.0, "unit": "J/m", "mass_exponent": 1, "rate_over": "way"},
@@ -62,7 +61,6 @@ EVASIVE_ACCELERATION = declare(
     symbol="a_ev",
     spec_version=2,
     unit="m/s²",
-    better="lower",
     minimum=0.0,
     variants={
         "corrected": {},

@@ -8,7 +8,14 @@ from typing import Literal
 from crowdbot.plugin import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import ContactTol, JumpSpeed, ReleaseGap, ZeroTol
 
-declare = partial(declare_metric, category="collision")
+declare = partial(
+    declare_metric,
+    category="collision",
+    spec_version=2,
+    better="lower",
+    minimum=0.0,
+    more_people="up",
+)
 
 
 class CollisionCountSpec(MetricSpec):
@@ -23,12 +30,8 @@ class CollisionCountSpec(MetricSpec):
 COLLISION_COUNT = declare(
     CollisionCountSpec,
     symbol="C",
-    spec_version=2,
     unit="1",
-    better="lower",
-    minimum=0.0,
     integer=True,
-    more_people="up",
     variants={"literal": {"refinement": "free"}, "corrected": {"refinement": "same"}},
 )
 
@@ -45,11 +48,7 @@ class CollisionSeveritySpec(MetricSpec):
 COLLISION_SEVERITY = declare(
     CollisionSeveritySpec,
     symbol="S_C",
-    spec_version=2,
     unit="J",
-    better="lower",
-    minimum=0.0,
-    more_people="up",
     refinement="same",
     mass_exponent=1,
     variants={
@@ -74,12 +73,8 @@ class CollisionRateSpec(MetricSpec):
 COLLISION_RATE = declare(
     CollisionRateSpec,
     symbol="C_T",
-    spec_version=2,
     unit="1/s",
-    better="lower",
     experimental=True,
-    minimum=0.0,
-    more_people="up",
     refinement="same",
     variants={"per_time": {}, "per_length": {"unit": "1/m"}},
 )
@@ -97,13 +92,9 @@ class CollisionsAtFaultSpec(MetricSpec):
 COLLISIONS_AT_FAULT = declare(
     CollisionsAtFaultSpec,
     symbol="C_f",
-    spec_version=2,
     unit="1",
-    better="lower",
     experimental=True,
-    minimum=0.0,
     integer=True,
-    more_people="up",
     refinement="same",
     variants=("robot", "person"),
 )

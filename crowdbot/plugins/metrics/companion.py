@@ -11,7 +11,7 @@ from crowdbot.plugins.metrics.parameters import Intimate, JumpSpeed, Social
 #: Two metrics change where a person passes a portal.
 POSITIONS = "positions of robot and person are compared"
 
-declare = partial(declare_metric, category="person", about_person=True)
+declare = partial(declare_metric, category="person", about_person=True, minimum=0.0)
 
 
 class AssistedSpec(MetricSpec):
@@ -22,9 +22,7 @@ class AssistedSpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-ASSISTED = declare(
-    AssistedSpec, symbol="S_p", unit="1", better="higher", minimum=0.0, maximum=1.0, integer=True
-)
+ASSISTED = declare(AssistedSpec, symbol="S_p", unit="1", better="higher", maximum=1.0, integer=True)
 
 
 class TimeInPlaceSpec(MetricSpec):
@@ -39,7 +37,6 @@ TIME_IN_PLACE = declare(
     symbol="f_pl",
     unit="1",
     better="higher",
-    minimum=0.0,
     maximum=1.0,
     variants=("corrected", "since"),
 )
@@ -52,7 +49,7 @@ class TimeToPlaceSpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-TIME_TO_PLACE = declare(TimeToPlaceSpec, symbol="T_pl", unit="s", better="lower", minimum=0.0)
+TIME_TO_PLACE = declare(TimeToPlaceSpec, symbol="T_pl", unit="s", better="lower")
 
 
 class PersonDistanceErrorSpec(MetricSpec):
@@ -67,7 +64,6 @@ PERSON_DISTANCE_ERROR = declare(
     symbol="e_d",
     unit="m",
     better="lower",
-    minimum=0.0,
     changes_with={"teleport": POSITIONS},
 )
 
@@ -84,7 +80,6 @@ PERSON_ANGLE_ERROR = declare(
     symbol="e_α",
     unit="rad",
     better="lower",
-    minimum=0.0,
     maximum=3.15,
     changes_with={"teleport": POSITIONS},
 )
@@ -102,6 +97,4 @@ class PersonComfortSpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-PERSON_COMFORT = declare(
-    PersonComfortSpec, symbol="C_p", unit="1", better="higher", minimum=0.0, maximum=1.0
-)
+PERSON_COMFORT = declare(PersonComfortSpec, symbol="C_p", unit="1", better="higher", maximum=1.0)

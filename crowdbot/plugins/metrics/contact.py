@@ -7,7 +7,7 @@ from typing import Literal
 
 from crowdbot.plugin import MetricSpec, declare_metric
 
-declare = partial(declare_metric, category="contact")
+declare = partial(declare_metric, category="contact", better="lower", minimum=0.0, more_people="up")
 
 
 class MaxContactForceSpec(MetricSpec):
@@ -16,15 +16,7 @@ class MaxContactForceSpec(MetricSpec):
     kind: Literal["max_contact_force"] = "max_contact_force"
 
 
-MAX_CONTACT_FORCE = declare(
-    MaxContactForceSpec,
-    symbol="F_max",
-    unit="N",
-    better="lower",
-    minimum=0.0,
-    more_people="up",
-    mass_exponent=1,
-)
+MAX_CONTACT_FORCE = declare(MaxContactForceSpec, symbol="F_max", unit="N", mass_exponent=1)
 
 
 class ContactImpulseSpec(MetricSpec):
@@ -33,15 +25,7 @@ class ContactImpulseSpec(MetricSpec):
     kind: Literal["contact_impulse"] = "contact_impulse"
 
 
-CONTACT_IMPULSE = declare(
-    ContactImpulseSpec,
-    symbol="I",
-    unit="N s",
-    better="lower",
-    minimum=0.0,
-    more_people="up",
-    mass_exponent=1,
-)
+CONTACT_IMPULSE = declare(ContactImpulseSpec, symbol="I", unit="N s", mass_exponent=1)
 
 
 class ContactTimeSpec(MetricSpec):
@@ -50,6 +34,4 @@ class ContactTimeSpec(MetricSpec):
     kind: Literal["contact_time"] = "contact_time"
 
 
-CONTACT_TIME = declare(
-    ContactTimeSpec, symbol="T_c", unit="s", better="lower", minimum=0.0, more_people="up"
-)
+CONTACT_TIME = declare(ContactTimeSpec, symbol="T_c", unit="s")

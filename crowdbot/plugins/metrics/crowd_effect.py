@@ -8,7 +8,7 @@ from typing import Literal
 from crowdbot.plugin import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import JumpSpeed, NeighbourRadius, ZeroTol
 
-declare = partial(declare_metric, category="effect on crowd")
+declare = partial(declare_metric, category="effect on crowd", minimum=0.0)
 
 
 class EffectOnTimeSpec(MetricSpec):
@@ -25,7 +25,6 @@ EFFECT_ON_TIME = declare(
     spec_version=3,
     unit="1",
     better="reference",
-    minimum=0.0,
     variants={
         "literal": {"better": "higher"},
         "corrected": {"self_value": 1.0},
@@ -49,7 +48,6 @@ EFFECT_ON_VELOCITY = declare(
     spec_version=2,
     unit="1",
     better="reference",
-    minimum=0.0,
     variants={"literal": {"better": "lower"}, "corrected": {"self_value": 1.0}},
 )
 
@@ -69,7 +67,6 @@ NEIGHBOURS_TIME_TO_GOAL = declare(
     spec_version=2,
     unit="1",
     better="lower",
-    minimum=0.0,
     variants=("literal", "corrected", "pace"),
 )
 
@@ -89,7 +86,6 @@ NEIGHBOURS_VELOCITY = declare(
     spec_version=2,
     unit="1",
     better="reference",
-    minimum=0.0,
     variants={"literal": {"better": "higher"}, "corrected": {}},
 )
 
@@ -101,11 +97,5 @@ class CrowdDeviationSpec(MetricSpec):
 
 
 CROWD_DEVIATION = declare(
-    CrowdDeviationSpec,
-    symbol="CD",
-    unit="m",
-    better="lower",
-    experimental=True,
-    minimum=0.0,
-    self_value=0.0,
+    CrowdDeviationSpec, symbol="CD", unit="m", better="lower", experimental=True, self_value=0.0
 )

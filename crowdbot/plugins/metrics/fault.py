@@ -17,7 +17,7 @@ from crowdbot.plugins.metrics.parameters import (
     ReleaseGap,
 )
 
-declare = partial(declare_metric, category="collision")
+declare = partial(declare_metric, category="collision", better="lower", minimum=0.0)
 
 
 class ContactsAtFaultSpec(MetricSpec):
@@ -38,8 +38,6 @@ CONTACTS_AT_FAULT = declare(
     symbol="C_af",
     spec_version=5,
     unit="1",
-    better="lower",
-    minimum=0.0,
     integer=True,
     more_people="up",
     refinement="same",
@@ -66,8 +64,6 @@ CONTACTS_PER_KM = declare(
     symbol="C_km",
     spec_version=6,
     unit="1/km",
-    better="lower",
-    minimum=0.0,
     variants={
         "corrected": {"more_people": "up", "rate_over": "way"},
         "at_fault": {"more_people": "up", "rate_over": "way"},

@@ -14,7 +14,7 @@ from crowdbot.plugins.metrics.parameters import (
     ZeroTol,
 )
 
-declare = partial(declare_metric, category="motion")
+declare = partial(declare_metric, category="motion", minimum=0.0)
 
 
 class TimeNotMovingSpec(MetricSpec):
@@ -26,7 +26,7 @@ class TimeNotMovingSpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-TIME_NOT_MOVING = declare(TimeNotMovingSpec, symbol="T_nm", unit="s", better="lower", minimum=0.0)
+TIME_NOT_MOVING = declare(TimeNotMovingSpec, symbol="T_nm", unit="s", better="lower")
 
 
 class StalledTimeSpec(MetricSpec):
@@ -37,9 +37,7 @@ class StalledTimeSpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-STALLED_TIME = declare(
-    StalledTimeSpec, symbol="ST", unit="s", better="lower", experimental=True, minimum=0.0
-)
+STALLED_TIME = declare(StalledTimeSpec, symbol="ST", unit="s", better="lower", experimental=True)
 
 
 class CumulativeHeadingChangeSpec(MetricSpec):
@@ -50,7 +48,7 @@ class CumulativeHeadingChangeSpec(MetricSpec):
 
 
 CUMULATIVE_HEADING_CHANGE = declare(
-    CumulativeHeadingChangeSpec, symbol="CHC", unit="rad", better="lower", minimum=0.0
+    CumulativeHeadingChangeSpec, symbol="CHC", unit="rad", better="lower"
 )
 
 
@@ -63,7 +61,7 @@ class PathIrregularitySpec(MetricSpec):
 
 
 PATH_IRREGULARITY = declare(
-    PathIrregularitySpec, symbol="PI", unit="rad/m", better="lower", experimental=True, minimum=0.0
+    PathIrregularitySpec, symbol="PI", unit="rad/m", better="lower", experimental=True
 )
 
 
@@ -80,7 +78,6 @@ SPEED = declare(
     unit="m/s",
     better="none",
     experimental=True,
-    minimum=0.0,
     variants=("min", "avg", "max"),
 )
 
@@ -98,7 +95,6 @@ ACCELERATION = declare(
     unit="m/s²",
     better="none",
     experimental=True,
-    minimum=0.0,
     variants=("min", "avg", "max"),
 )
 
@@ -116,7 +112,6 @@ JERK = declare(
     unit="m/s³",
     better="lower",
     experimental=True,
-    minimum=0.0,
     variants=("min", "avg", "max"),
 )
 
@@ -130,5 +125,5 @@ class DimensionlessJerkSpec(MetricSpec):
 
 
 DIMENSIONLESS_JERK = declare(
-    DimensionlessJerkSpec, symbol="DLJ", unit="1", better="lower", experimental=True, minimum=0.0
+    DimensionlessJerkSpec, symbol="DLJ", unit="1", better="lower", experimental=True
 )

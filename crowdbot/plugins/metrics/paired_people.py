@@ -15,7 +15,7 @@ from crowdbot.plugins.metrics.parameters import (
     SameStart,
 )
 
-declare = partial(declare_metric, category="burden")
+declare = partial(declare_metric, category="burden", better="lower", self_value=0.0)
 
 
 class DisplacementSpec(MetricSpec):
@@ -33,8 +33,6 @@ DISPLACEMENT = declare(
     DisplacementSpec,
     symbol="D_p",
     unit="m",
-    better="lower",
-    self_value=0.0,
     variants={
         "corrected": {"minimum": 0.0},
         "worst": {"minimum": 0.0},
@@ -60,8 +58,6 @@ DELAY = declare(
     DelaySpec,
     symbol="Δt_p",
     unit="s",
-    better="lower",
-    self_value=0.0,
     variants={
         "corrected": {},
         "worst": {},

@@ -14,7 +14,9 @@ from crowdbot.plugins.metrics.parameters import (
     ZeroTol,
 )
 
-declare = partial(declare_metric, category="path efficiency")
+declare = partial(
+    declare_metric, category="path efficiency", spec_version=2, unit="1", better="higher"
+)
 
 
 class RelativeTimeToGoalSpec(MetricSpec):
@@ -27,9 +29,6 @@ class RelativeTimeToGoalSpec(MetricSpec):
 RELATIVE_TIME_TO_GOAL = declare(
     RelativeTimeToGoalSpec,
     symbol="T_rtg",
-    spec_version=2,
-    unit="1",
-    better="higher",
     minimum=0.0,
     variants={
         "literal": {"self_value": 1.0},
@@ -50,9 +49,6 @@ class RelativePathLengthSpec(MetricSpec):
 RELATIVE_PATH_LENGTH = declare(
     RelativePathLengthSpec,
     symbol="L_rp",
-    spec_version=2,
-    unit="1",
-    better="higher",
     minimum=0.0,
     self_value=1.0,
     variants=("literal", "corrected"),
@@ -72,9 +68,6 @@ class RelativeJerkSpec(MetricSpec):
 RELATIVE_JERK = declare(
     RelativeJerkSpec,
     symbol="J_rp",
-    spec_version=2,
-    unit="1",
-    better="higher",
     self_value=1.0,
     variants={
         "literal": {"changes_with": {"reflect": "the signed yaw rate changes its sign"}},

@@ -7,7 +7,9 @@ from typing import Literal
 
 from crowdbot.plugin import MetricSpec, declare_metric
 
-declare = partial(declare_metric, category="planner")
+declare = partial(
+    declare_metric, category="planner", spec_version=2, unit="s", better="none", minimum=0.0
+)
 
 
 class MeanPlannerTimeSpec(MetricSpec):
@@ -16,9 +18,7 @@ class MeanPlannerTimeSpec(MetricSpec):
     kind: Literal["mean_planner_time"] = "mean_planner_time"
 
 
-MEAN_PLANNER_TIME = declare(
-    MeanPlannerTimeSpec, symbol="t_p", spec_version=2, unit="s", better="none", minimum=0.0
-)
+MEAN_PLANNER_TIME = declare(MeanPlannerTimeSpec, symbol="t_p")
 
 
 class MaxPlannerTimeSpec(MetricSpec):
@@ -27,6 +27,4 @@ class MaxPlannerTimeSpec(MetricSpec):
     kind: Literal["max_planner_time"] = "max_planner_time"
 
 
-MAX_PLANNER_TIME = declare(
-    MaxPlannerTimeSpec, symbol="t_p,max", spec_version=2, unit="s", better="none", minimum=0.0
-)
+MAX_PLANNER_TIME = declare(MaxPlannerTimeSpec, symbol="t_p,max")

@@ -8,7 +8,7 @@ from typing import Literal
 from crowdbot.plugin import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import LengthTol, NeighbourRadius, ProximityFloor
 
-declare = partial(declare_metric, category="proximity")
+declare = partial(declare_metric, category="proximity", minimum=0.0)
 
 
 class ProximitySpec(MetricSpec):
@@ -25,7 +25,6 @@ PROXIMITY = declare(
     spec_version=2,
     unit="1/m",
     better="lower",
-    minimum=0.0,
     more_people="up",
     variants={
         "literal": {"refinement": "double"},
@@ -48,7 +47,6 @@ NORMALIZED_PROXIMITY = declare(
     symbol="P̂",
     unit="1",
     better="none",
-    minimum=0.0,
     variants={"literal": {}, "corrected": {}, "barycentre": {"maximum": 1.0}},
 )
 
@@ -61,13 +59,7 @@ class NeighbourCountSpec(MetricSpec):
 
 
 NEIGHBOUR_COUNT = declare(
-    NeighbourCountSpec,
-    symbol="n_N",
-    unit="1",
-    better="none",
-    experimental=True,
-    minimum=0.0,
-    more_people="up",
+    NeighbourCountSpec, symbol="n_N", unit="1", better="none", experimental=True, more_people="up"
 )
 
 
@@ -79,11 +71,5 @@ class LocalDensitySpec(MetricSpec):
 
 
 LOCAL_DENSITY = declare(
-    LocalDensitySpec,
-    symbol="ρ_N",
-    unit="1/m²",
-    better="none",
-    experimental=True,
-    minimum=0.0,
-    more_people="up",
+    LocalDensitySpec, symbol="ρ_N", unit="1/m²", better="none", experimental=True, more_people="up"
 )

@@ -7,7 +7,7 @@ from typing import Literal
 
 from crowdbot.plugin import MetricSpec, declare_metric
 
-declare = partial(declare_metric, category="questionnaire")
+declare = partial(declare_metric, category="questionnaire", unit="points")
 
 
 class NasaTlxSpec(MetricSpec):
@@ -19,7 +19,6 @@ class NasaTlxSpec(MetricSpec):
 NASA_TLX = declare(
     NasaTlxSpec,
     symbol="TLX",
-    unit="points",
     better="lower",
     minimum=0.0,
     maximum=100.0,
@@ -36,7 +35,6 @@ class UseSpec(MetricSpec):
 USE = declare(
     UseSpec,
     symbol="USE",
-    unit="points",
     better="higher",
     minimum=1.0,
     maximum=7.0,

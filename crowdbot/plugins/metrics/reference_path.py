@@ -8,7 +8,7 @@ from typing import Literal
 from crowdbot.plugin import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import DtwSpacing, DtwThreshold, JumpSpeed
 
-declare = partial(declare_metric, category="path efficiency")
+declare = partial(declare_metric, category="path efficiency", minimum=0.0)
 
 
 class AdeToReferenceSpec(MetricSpec):
@@ -18,7 +18,7 @@ class AdeToReferenceSpec(MetricSpec):
 
 
 ADE_TO_REFERENCE = declare(
-    AdeToReferenceSpec, symbol="ADE", unit="m", better="lower", minimum=0.0, self_value=0.0
+    AdeToReferenceSpec, symbol="ADE", unit="m", better="lower", self_value=0.0
 )
 
 
@@ -29,7 +29,7 @@ class FdeToReferenceSpec(MetricSpec):
 
 
 FDE_TO_REFERENCE = declare(
-    FdeToReferenceSpec, symbol="FDE", unit="m", better="lower", minimum=0.0, self_value=0.0
+    FdeToReferenceSpec, symbol="FDE", unit="m", better="lower", self_value=0.0
 )
 
 
@@ -42,15 +42,7 @@ class NdtwSpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-NDTW = declare(
-    NdtwSpec,
-    symbol="nDTW",
-    unit="1",
-    better="higher",
-    minimum=0.0,
-    maximum=1.0,
-    self_value=1.0,
-)
+NDTW = declare(NdtwSpec, symbol="nDTW", unit="1", better="higher", maximum=1.0, self_value=1.0)
 
 
 class SdtwSpec(MetricSpec):
@@ -62,4 +54,4 @@ class SdtwSpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-SDTW = declare(SdtwSpec, symbol="SDTW", unit="1", better="higher", minimum=0.0, maximum=1.0)
+SDTW = declare(SdtwSpec, symbol="SDTW", unit="1", better="higher", maximum=1.0)

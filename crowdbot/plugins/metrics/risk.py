@@ -8,7 +8,7 @@ from typing import Literal
 from crowdbot.plugin import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import ContactTol, JumpSpeed, RelSpeedTol, RiskHorizon
 
-declare = partial(declare_metric, category="collision")
+declare = partial(declare_metric, category="collision", minimum=0.0)
 
 
 class RiskSpec(MetricSpec):
@@ -27,7 +27,6 @@ RISK = declare(
     spec_version=3,
     unit="s",
     better="lower",
-    minimum=0.0,
     variants={
         "literal": {"better": "none", "refinement": "double"},
         "corrected": {"better": "none", "more_people": "up"},
@@ -54,7 +53,6 @@ EXPECTED_SEVERITY = declare(
     spec_version=2,
     unit="m²/s",
     better="lower",
-    minimum=0.0,
     variants={
         "literal": {"better": "none", "refinement": "double"},
         "corrected": {"better": "none"},
@@ -79,7 +77,6 @@ TIME_EXPOSED = declare(
     spec_version=2,
     unit="s",
     better="lower",
-    minimum=0.0,
     more_people="up",
     variants={"corrected": {"better": "none"}, "rate": {"unit": "1", "maximum": 1.0}},
 )
@@ -101,7 +98,6 @@ INTEGRATED_TIME_TO_COLLISION = declare(
     spec_version=2,
     unit="s²",
     better="lower",
-    minimum=0.0,
     more_people="up",
     variants={"corrected": {"better": "none"}, "rate": {"unit": "s"}},
 )
@@ -123,7 +119,6 @@ MIN_TIME_TO_COLLISION = declare(
     unit="s",
     better="higher",
     experimental=True,
-    minimum=0.0,
     more_people="down",
     variants=("corrected", "disc"),
 )

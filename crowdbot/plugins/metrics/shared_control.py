@@ -8,7 +8,7 @@ from typing import Literal
 from crowdbot.plugin import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import SamplePeriod, ZeroTol
 
-declare = partial(declare_metric, category="shared control")
+declare = partial(declare_metric, category="shared control", unit="1")
 
 
 class AgreementSpec(MetricSpec):
@@ -21,7 +21,6 @@ class AgreementSpec(MetricSpec):
 AGREEMENT = declare(
     AgreementSpec,
     symbol="a",
-    unit="1",
     better="higher",
     minimum=0.0,
     maximum=1.0,
@@ -41,7 +40,6 @@ class UserInputEntropySpec(MetricSpec):
 USER_INPUT_ENTROPY = declare(
     UserInputEntropySpec,
     symbol="H",
-    unit="1",
     better="lower",
     variants={"literal": {}, "corrected": {"minimum": 0.0, "maximum": 1.0}},
     spec_version=2,
@@ -57,7 +55,6 @@ class FluencySpec(MetricSpec):
 FLUENCY = declare(
     FluencySpec,
     symbol="F",
-    unit="1",
     better="higher",
     variants={
         "literal": {"maximum": 1.0},

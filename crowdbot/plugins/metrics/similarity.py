@@ -8,7 +8,9 @@ from typing import Literal
 from crowdbot.plugin import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import HeadingMinSpeed, JumpSpeed, NeighbourRadius, ZeroTol
 
-declare = partial(declare_metric, category="similarity")
+declare = partial(
+    declare_metric, category="similarity", spec_version=2, unit="1", better="reference"
+)
 
 
 class TimeToGoalSimilaritySpec(MetricSpec):
@@ -20,13 +22,7 @@ class TimeToGoalSimilaritySpec(MetricSpec):
 
 
 TIME_TO_GOAL_SIMILARITY = declare(
-    TimeToGoalSimilaritySpec,
-    symbol="Δ_ttg",
-    spec_version=2,
-    unit="1",
-    better="reference",
-    minimum=0.0,
-    variants=("literal", "corrected"),
+    TimeToGoalSimilaritySpec, symbol="Δ_ttg", minimum=0.0, variants=("literal", "corrected")
 )
 
 
@@ -39,13 +35,7 @@ class PathLengthSimilaritySpec(MetricSpec):
 
 
 PATH_LENGTH_SIMILARITY = declare(
-    PathLengthSimilaritySpec,
-    symbol="Δ_L",
-    spec_version=2,
-    unit="1",
-    better="reference",
-    minimum=0.0,
-    variants=("literal", "corrected"),
+    PathLengthSimilaritySpec, symbol="Δ_L", minimum=0.0, variants=("literal", "corrected")
 )
 
 
@@ -59,12 +49,7 @@ class HeadingSimilaritySpec(MetricSpec):
 
 
 HEADING_SIMILARITY = declare(
-    HeadingSimilaritySpec,
-    symbol="Δ_θ",
-    spec_version=2,
-    unit="1",
-    better="reference",
-    variants={"literal": {}, "corrected": {"minimum": 0.0}},
+    HeadingSimilaritySpec, symbol="Δ_θ", variants={"literal": {}, "corrected": {"minimum": 0.0}}
 )
 
 
@@ -77,13 +62,7 @@ class VelocitySimilaritySpec(MetricSpec):
 
 
 VELOCITY_SIMILARITY = declare(
-    VelocitySimilaritySpec,
-    symbol="Δ_v",
-    spec_version=2,
-    unit="1",
-    better="reference",
-    minimum=0.0,
-    variants=("literal", "corrected"),
+    VelocitySimilaritySpec, symbol="Δ_v", minimum=0.0, variants=("literal", "corrected")
 )
 
 
@@ -97,11 +76,5 @@ class NeighbourVelocitySimilaritySpec(MetricSpec):
 
 
 NEIGHBOUR_VELOCITY_SIMILARITY = declare(
-    NeighbourVelocitySimilaritySpec,
-    symbol="Δ_v|N",
-    spec_version=2,
-    unit="1",
-    better="reference",
-    minimum=0.0,
-    variants=("literal", "corrected"),
+    NeighbourVelocitySimilaritySpec, symbol="Δ_v|N", minimum=0.0, variants=("literal", "corrected")
 )

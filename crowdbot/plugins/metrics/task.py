@@ -15,7 +15,7 @@ from crowdbot.plugins.metrics.parameters import (
     ZeroTol,
 )
 
-declare = partial(declare_metric, category="task")
+declare = partial(declare_metric, category="task", minimum=0.0)
 
 
 class SuccessSpec(MetricSpec):
@@ -25,14 +25,7 @@ class SuccessSpec(MetricSpec):
 
 
 SUCCESS = declare(
-    SuccessSpec,
-    symbol="S",
-    spec_version=2,
-    unit="1",
-    better="higher",
-    minimum=0.0,
-    maximum=1.0,
-    integer=True,
+    SuccessSpec, symbol="S", spec_version=2, unit="1", better="higher", maximum=1.0, integer=True
 )
 
 
@@ -51,7 +44,6 @@ SUCCESS_NO_COLLISION = declare(
     spec_version=2,
     unit="1",
     better="higher",
-    minimum=0.0,
     maximum=1.0,
     integer=True,
     more_people="down",
@@ -66,7 +58,7 @@ class SplSpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-SPL = declare(SplSpec, symbol="SPL", unit="1", better="higher", minimum=0.0, maximum=1.0)
+SPL = declare(SplSpec, symbol="SPL", unit="1", better="higher", maximum=1.0)
 
 
 class StlSpec(MetricSpec):
@@ -77,14 +69,7 @@ class StlSpec(MetricSpec):
 
 
 STL = declare(
-    StlSpec,
-    symbol="STL",
-    spec_version=2,
-    unit="1",
-    better="higher",
-    experimental=True,
-    minimum=0.0,
-    maximum=1.0,
+    StlSpec, symbol="STL", spec_version=2, unit="1", better="higher", experimental=True, maximum=1.0
 )
 
 
@@ -101,7 +86,6 @@ TIMEOUT = declare(
     unit="1",
     better="lower",
     experimental=True,
-    minimum=0.0,
     maximum=1.0,
     integer=True,
 )
@@ -113,9 +97,7 @@ class FinalDistanceToGoalSpec(MetricSpec):
     kind: Literal["final_distance_to_goal"] = "final_distance_to_goal"
 
 
-FINAL_DISTANCE_TO_GOAL = declare(
-    FinalDistanceToGoalSpec, symbol="DG_fin", unit="m", better="lower", minimum=0.0
-)
+FINAL_DISTANCE_TO_GOAL = declare(FinalDistanceToGoalSpec, symbol="DG_fin", unit="m", better="lower")
 
 
 class MinDistanceToGoalSpec(MetricSpec):
@@ -124,9 +106,7 @@ class MinDistanceToGoalSpec(MetricSpec):
     kind: Literal["min_distance_to_goal"] = "min_distance_to_goal"
 
 
-MIN_DISTANCE_TO_GOAL = declare(
-    MinDistanceToGoalSpec, symbol="DG_min", unit="m", better="lower", minimum=0.0
-)
+MIN_DISTANCE_TO_GOAL = declare(MinDistanceToGoalSpec, symbol="DG_min", unit="m", better="lower")
 
 
 class PathEfficiencySpec(MetricSpec):
@@ -138,13 +118,7 @@ class PathEfficiencySpec(MetricSpec):
 
 
 PATH_EFFICIENCY = declare(
-    PathEfficiencySpec,
-    symbol="PE",
-    spec_version=2,
-    unit="1",
-    better="higher",
-    experimental=True,
-    minimum=0.0,
+    PathEfficiencySpec, symbol="PE", spec_version=2, unit="1", better="higher", experimental=True
 )
 
 
@@ -157,13 +131,7 @@ class FailureToProgressSpec(MetricSpec):
 
 
 FAILURE_TO_PROGRESS = declare(
-    FailureToProgressSpec,
-    symbol="FP",
-    unit="1",
-    better="lower",
-    experimental=True,
-    minimum=0.0,
-    integer=True,
+    FailureToProgressSpec, symbol="FP", unit="1", better="lower", experimental=True, integer=True
 )
 
 
@@ -180,6 +148,5 @@ AGGREGATED_TIME = declare(
     unit="s",
     better="lower",
     experimental=True,
-    minimum=0.0,
     more_people="up",
 )
