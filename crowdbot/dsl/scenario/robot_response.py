@@ -189,12 +189,12 @@ class GivingWay(RobotResponse):
         "People pass behind a crossing robot if that way is longer by less than the "
         "robot drives in this time, s; behind a vehicle they leave more room.",
     )
-    waiting_speed: NonNegativeSpeed = Field(
-        default=1.55,
-        exclude_if=lambda speed: speed == 1.55,  # scenarios from before it keep their hashes
-        description="People wait for a faster robot that crosses their way, however long it is, "
+    waiting_speed: NonNegativeSpeed = default(
+        1.55,
+        "People wait for a faster robot that crosses their way, however long it is, "
         "unless they expect to be clear of it in time, m/s. Recorded: 6 % (VCI-DUT) and 12 % "
         "(VCI-CITR) pass before a vehicle that they would meet.",
+        omitted=True,
     )
     speeding_up: PositiveAcceleration = default(
         0.6, "Largest acceleration ahead to pass first, m/s^2."

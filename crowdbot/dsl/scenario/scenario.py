@@ -35,7 +35,7 @@ from crowdbot.dsl.scenario.person_goals import (
 from crowdbot.dsl.scenario.robot_response import HumanResponse, RobotResponseChoice
 from crowdbot.dsl.scenario.routing import RoutingChoice
 from crowdbot.dsl.scenario.spawning import Agents, RouteEnd, Spawn
-from crowdbot.dsl.scenario.steering import SteeringSpec, unset
+from crowdbot.dsl.scenario.steering import SteeringSpec
 from crowdbot.dsl.scenario.streams import StreamChoice
 from crowdbot.dsl.spec.areas import GoalArea
 from crowdbot.dsl.spec.assets import Asset
@@ -97,7 +97,7 @@ class Body(Spec):
         None,
         "Radius of the disc that policies and steering parts keep clear of, m; by "
         "default `radius`, which is what touches.",
-        exclude_if=unset,
+        omitted=True,
     )
     mass: PositiveMass = default(75.0, "Mass in the physics, kg.")
     max_speed: PositiveSpeed = default(3.0, "Largest walking speed, m/s.")
@@ -109,7 +109,7 @@ class Body(Spec):
         {},
         "Named meshes (glTF) of people for colour images, which people have in turn. "
         "Lidars, depth cameras and contacts do not see them.",
-        exclude_if=lambda figures: not figures,
+        omitted=True,
     )
 
 
@@ -129,9 +129,7 @@ class Crowd(Spec):
     """
 
     flow: Flow | None = None
-    streams: dict[str, StreamChoice] = default(
-        {}, "Named streams of people.", exclude_if=lambda streams: not streams
-    )
+    streams: dict[str, StreamChoice] = default({}, "Named streams of people.", omitted=True)
     spawns: dict[str, Spawn] = default({}, "Named spawns.")
     goal_areas: dict[str, GoalArea] = default({}, "Named areas of goals.")
     agents: Agents = default((), "Explicit agents: rows, or `{csv: FILE}`.", strict=False)
@@ -142,12 +140,10 @@ class Crowd(Spec):
     people: dict[str, PeopleKind] = default(
         {},
         "Named kinds of people that the crowd is a mixture of; without it all are alike.",
-        exclude_if=lambda kinds: not kinds,
+        omitted=True,
     )
     groups: GroupForces | None = default(
-        GroupForces(),
-        "What holds groups together; null: nothing.",
-        exclude_if=lambda forces: forces == GroupForces(),
+        GroupForces(), "What holds groups together; null: nothing.", omitted=True
     )
     policy: SerializeAsAny[CrowdPolicySpec]
     costs: dict[str, SerializeAsAny[CostFunctionSpec]] = default(
@@ -160,13 +156,13 @@ class Crowd(Spec):
         "soft",
         "firm: no body overlaps a wall, a block or a pillar by more than 2 cm, however "
         "hard others push; soft: people are pushed out, and only their centres never come in.",
-        exclude_if=lambda value: value == "soft",
+        omitted=True,
     )
     contact_dissipation: NonNegativeDamping = default(
         0.0,
         "How much stiffer contact among people and with walls is while it closes, "
         "s/m: people part at most at its inverse. 0: they bounce off like springs.",
-        exclude_if=lambda value: value == 0.0,
+        omitted=True,
     )
     exit_point: Literal["random", "offset"] = default(
         "random",
@@ -176,18 +172,16 @@ class Crowd(Spec):
         "random",
         "Where in a portal people go on each trip: anywhere, so that ways cross, or "
         "straight ahead of where they come in or start.",
-        exclude_if=lambda value: value == "random",
+        omitted=True,
     )
     robot_response: RobotResponseChoice = default(
         HumanResponse(), "How people respond to the robot."
     )
     routing: RoutingChoice | None = default(
-        None,
-        "How people find their way; without it `straight` to their goals.",
-        exclude_if=lambda value: value is None,
+        None, "How people find their way; without it `straight` to their goals.", omitted=True
     )
     steering: SteeringSpec | None = default(
-        None, "Beside any policy: time gap, personal space, lanes, walls, wander.", exclude_if=unset
+        None, "Beside any policy: time gap, personal space, lanes, walls, wander.", omitted=True
     )
     seed: CrowdSeed = default(CrowdSeed(), "Draws the crowd.")
 
@@ -201,7 +195,7 @@ class Goal(TaskGoal):
     """The zone that the robot's centre has to reach."""
 
     kind: Literal["zone"] = default(
-        "zone", "A place; other kinds of goals are people.", exclude_if=lambda kind: kind == "zone"
+        "zone", "A place; other kinds of goals are people.", omitted=True
     )
     zone: str = Field(description="Name of the goal zone.")
 
@@ -232,7 +226,7 @@ class TaskSpec(Spec):
         "stay",
         "Of one robot among several that has arrived, failed or run out of time: it "
         "stays where it is, as an obstacle, or leaves.",
-        exclude_if=lambda value: value == "stay",
+        omitted=True,
     )
 
     @property

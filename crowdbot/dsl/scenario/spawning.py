@@ -219,19 +219,14 @@ class Agent(Spec):
         None, "A stream: from the first portal to the second.", strict=False
     )
     pauses: tuple[NonNegativeDuration, ...] = default(
-        (),
-        "How long it stays at each goal, s; without it nowhere.",
-        strict=False,
-        exclude_if=lambda pauses: not pauses,
+        (), "How long it stays at each goal, s; without it nowhere.", strict=False, omitted=True
     )
     look: AppearanceName | None = default(
         None,
         "What sensors see; its usual radius, mass and height where none is given.",
-        exclude_if=lambda look: look is None,
+        omitted=True,
     )
-    height: PositiveLength | None = default(
-        None, "Height, m.", exclude_if=lambda height: height is None
-    )
+    height: PositiveLength | None = default(None, "Height, m.", omitted=True)
 
     @model_validator(mode="after")
     def _a_pause_for_each_goal(self) -> Agent:

@@ -5,7 +5,7 @@ Formulas and sources: docs/reference/crowd/steering.md.
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from annotated_types import Ge, Le
 
@@ -18,11 +18,6 @@ from crowdbot.dsl.spec.quantities import (
     PositiveLength,
 )
 from crowdbot.dsl.spec.spec import Spec
-
-
-def unset(value: Any) -> bool:
-    """Return True if an optional field is unset, and so not part of the hash."""
-    return value is None
 
 
 class TimeGapSpec(Spec):
@@ -79,12 +74,8 @@ class WanderSpec(Spec):
 class SteeringSpec(Spec):
     """Steering parts; each is off unless named."""
 
-    time_gap: TimeGapSpec | None = default(None, "Slow down behind others.", exclude_if=unset)
-    personal_space: PersonalSpaceSpec | None = default(
-        None, "Keep away from others.", exclude_if=unset
-    )
-    lanes: LanesSpec | None = default(
-        None, "Walk behind those who go the same way.", exclude_if=unset
-    )
-    wall_push: WallPushSpec | None = default(None, "Keep away from walls.", exclude_if=unset)
-    wander: WanderSpec | None = default(None, "Never walk quite straight.", exclude_if=unset)
+    time_gap: TimeGapSpec | None = default(None, "Slow down behind others.", omitted=True)
+    personal_space: PersonalSpaceSpec | None = default(None, "Keep away from others.", omitted=True)
+    lanes: LanesSpec | None = default(None, "Walk behind those who go the same way.", omitted=True)
+    wall_push: WallPushSpec | None = default(None, "Keep away from walls.", omitted=True)
+    wander: WanderSpec | None = default(None, "Never walk quite straight.", omitted=True)

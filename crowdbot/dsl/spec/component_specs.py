@@ -89,12 +89,10 @@ class EnvironmentSpec(ComponentSpec):
     floor: FloorContact = default(
         FloorContact(),
         "How wheels grip the floor; outside the hash while it is as usual.",
-        exclude_if=lambda floor: floor == FloorContact(),
+        omitted=True,
     )
     light: SceneLight | None = default(
-        None,
-        "Light of the scene; unset: that of a bright day, and outside the hash.",
-        exclude_if=lambda light: light is None,
+        None, "Light of the scene; unset: that of a bright day, and outside the hash.", omitted=True
     )
 
     def place(self) -> Place | None:
@@ -169,13 +167,13 @@ class SensorSpec(ComponentSpec):
     link: str | None = default(
         None,
         "Link of the robot's description that it is mounted on, in place of `mount`.",
-        exclude_if=lambda link: link is None,
+        omitted=True,
     )
     errors: dict[str, ReadingError] = default(
         {},
         "Named errors that are added to its readings, in the order of their names; "
         "outside the hash while there are none.",
-        exclude_if=lambda errors: not errors,
+        omitted=True,
     )
 
     @model_validator(mode="before")

@@ -94,13 +94,9 @@ class TiltableMount(Mount):
     """
 
     roll: Angle = default(
-        0.0,
-        "About its own x, rad; positive: the left side goes up.",
-        exclude_if=lambda value: value == 0.0,
+        0.0, "About its own x, rad; positive: the left side goes up.", omitted=True
     )
-    pitch: Angle = default(
-        0.0, "About its y, rad; positive: it looks down.", exclude_if=lambda value: value == 0.0
-    )
+    pitch: Angle = default(0.0, "About its y, rad; positive: it looks down.", omitted=True)
 
     @model_validator(mode="before")
     @classmethod

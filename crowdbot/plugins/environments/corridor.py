@@ -27,15 +27,9 @@ class CorridorSpec(EnvironmentSpec):
     length: PositiveLength = default(50.0, "Length along x, m.")
     width: PositiveLength = default(10.0, "Width along y, m.")
     wall_height: PositiveLength = default(2.5, "Height of the walls, m.")
-    pillars: dict[str, PillarSpec] = default(
-        {}, "Named round pillars.", exclude_if=lambda value: not value
-    )
-    pillar_grid: PillarGridSpec | None = default(
-        None, "Pillars in a grid.", exclude_if=lambda value: value is None
-    )
-    pillar_field: PillarFieldSpec | None = default(
-        None, "Pillars at random.", exclude_if=lambda value: value is None
-    )
+    pillars: dict[str, PillarSpec] = default({}, "Named round pillars.", omitted=True)
+    pillar_grid: PillarGridSpec | None = default(None, "Pillars in a grid.", omitted=True)
+    pillar_field: PillarFieldSpec | None = default(None, "Pillars at random.", omitted=True)
 
     @model_validator(mode="after")
     def _inside(self) -> CorridorSpec:

@@ -68,7 +68,7 @@ class FloorPlanFields(EnvironmentSpec):
         "Meaning of the layers of DXF by patterns of their names, the first that fits; "
         "layers that fit none are left out. Without it all layers are read: closed outlines as "
         "`polygons` says, lines as walls. Outside the hash while it is empty.",
-        exclude_if=lambda layers: not layers,
+        omitted=True,
     )
     unknown: Literal["solid", "free"] = default(
         "solid", "What cells of a grid are that are neither free nor occupied."

@@ -34,12 +34,10 @@ class UprightSpec(Spec):
     base: Length = default(
         0.0,
         "Its lower edge above the floor, m: 0 for what stands, more for what hangs.",
-        exclude_if=lambda value: value == 0.0,
+        omitted=True,
     )
     height: PositiveLength | None = default(
-        None,
-        "Its upper edge above the floor, m; without it `wall_height`.",
-        exclude_if=lambda value: value is None,
+        None, "Its upper edge above the floor, m; without it `wall_height`.", omitted=True
     )
 
     def heights(self, usual: float) -> Heights:
@@ -87,10 +85,7 @@ class BlockSpec(UprightSpec):
         description="Corners of the outline, in either sense, convex or not, m.",
     )
     holes: tuple[Corners, ...] = default(
-        (),
-        "Outlines of what is free within it, such as courtyards, m.",
-        strict=False,
-        exclude_if=lambda value: not value,
+        (), "Outlines of what is free within it, such as courtyards, m.", strict=False, omitted=True
     )
 
     @field_validator("corners")

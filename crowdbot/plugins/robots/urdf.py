@@ -65,7 +65,7 @@ class UrdfFields(RobotSpec):
         {},
         "Where joints are held, such as those of an arm: rad, of prismatic ones m; "
         "the others are held at zero.",
-        exclude_if=lambda value: not value,
+        omitted=True,
     )
     disc: DiscBody | None = default(None, "Outline that people avoid and touch.")
     box: BoxBody | None = default(None, "The same, in place of `disc`.")
@@ -74,7 +74,7 @@ class UrdfFields(RobotSpec):
         "boxes",
         "What collision meshes beside the file become: boxes around them, convex "
         "hulls, or convex pieces, for which the extra `meshes` is needed; else they are hulls.",
-        exclude_if=lambda value: value == "boxes",
+        omitted=True,
     )
     casters: dict[str, Caster] = default({}, "Named casters.")
     max_speed: PositiveSpeed = Field(description="Largest |v|, m/s.")

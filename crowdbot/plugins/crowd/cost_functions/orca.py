@@ -23,7 +23,7 @@ class OrcaSpec(CostFunctionSpec):
         "max_speed",
         "Largest speed of the optimum: the agent's, as in the original, or the "
         "preferred one, so that people do not hurry out of others' way.",
-        exclude_if=lambda value: value == "max_speed",
+        omitted=True,
     )
 
 

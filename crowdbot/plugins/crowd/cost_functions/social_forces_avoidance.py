@@ -35,7 +35,7 @@ class SocialForcesAvoidanceSpec(CostFunctionSpec):
         "other",
         "Whose stride makes the ellipse: the other's, as in the original, or the "
         "other's relative to one's own, which does not drive a one-way crowd.",
-        exclude_if=lambda value: value == "other",
+        omitted=True,
     )
 
 
