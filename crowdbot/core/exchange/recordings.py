@@ -16,11 +16,12 @@ from crowdbot.core.exchange.rows import Row, RowTable
 from crowdbot.core.exchange.scene import Draft, around, id_of
 from crowdbot.core.exchange.trial.replays import HEADER
 from crowdbot.core.trajectories.data_sets.homography import VideoScale, projected
+from crowdbot.core.trajectories.raw_table import as_number
 from crowdbot.core.trajectories.table_columns import FRAMES, USUAL_NAMES, unit_of, without_unit
+from crowdbot.core.trajectories.text_table import TOLD
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
 from crowdbot.errors import SpecError
 
-_CELLS = re.compile(r"[,;\t]")
 _NAMES = {
     "t": ("t", *(name for name in USUAL_NAMES["t"] if name not in FRAMES)),
     "frame": FRAMES,
@@ -82,23 +83,25 @@ def _people(
     file: OpenedScene, report: Report, scale: VideoScale
 ) -> dict[int, list[tuple[float, float, float]]]:
     lines = file.text.split("\n")
-    head = _split(lines[0])
+    top = _top(lines)
+    between = _separator(lines[top])
+    head = lines[top].split(between)
     columns = _columns(head)
     bare = not columns
     if columns and "t" not in columns and scale.frame_rate is None:
-        mark = Mark(file.source, 0, 0, max(1, len(lines[0])))
+        mark = Mark(file.source, top, 0, max(1, len(lines[top])))
         message = "its times are numbers of frames; --frame-rate says how many a second has"
         raise SpecError([Diagnostic("E402", message, mark)])
     number = _NUMBERED.search(file.path.stem)
-    names = _names([_split(line) for line in lines[1:]], columns)
+    names = _names([line.split(between) for line in lines[top + 1 :]], columns)
     units = {name: unit_of(name, head[at].strip().strip('"'), 1.0) for name, at in columns.items()}
     found: dict[int, list[tuple[float, float, float]]] = {}
     robots: list[_Row] = []
     marks: dict[int, Mark] = {}
-    for at in range(0 if bare else 1, len(lines)):
-        if not lines[at].strip():
+    for at in range(top if bare else top + 1, len(lines)):
+        if _is_empty(lines[at]):
             continue
-        row = _Row(file, at, _split(lines[at]), columns or _BARE, units)
+        row = _Row(file, at, lines[at].split(between), columns or _BARE, units)
         if not bare and "entity" in columns and row.text("entity").lower().startswith("robot"):
             robots.append(row)
             continue
@@ -110,7 +113,7 @@ def _people(
         if points and point[0] <= points[-1][0]:
             row.refuse("the times of a person have to rise")
         points.append(point)
-    whole = _record(file, report, head, bare)
+    whole = _record(file, report, head, bare, top)
     if robots:
         report.left_out(whole.add(Item("robot", robots[0].mark)), RECORDING.rows[2].note)
     for ident in (ident for ident, points in found.items() if len(points) == 1):
@@ -141,9 +144,19 @@ def _names(rows: Sequence[Sequence[str]], columns: Mapping[str, int]) -> dict[st
     return {name: number for number, name in enumerate(found)}
 
 
-def _split(line: str) -> list[str]:
-    """Return the cells of a line; between them are commas, semicolons or tabs, or else blanks."""
-    return _CELLS.split(line) if _CELLS.search(line) else line.split()
+def _is_empty(line: str) -> bool:
+    """Return True for a line without cells: blank, a comment, or a spreadsheet's ``sep=;``."""
+    return not line.strip() or line.lstrip().startswith("#") or TOLD.fullmatch(line) is not None
+
+
+def _top(lines: Sequence[str]) -> int:
+    """Return the number of the first line with cells; 0 if there is none."""
+    return next((at for at, line in enumerate(lines) if not _is_empty(line)), 0)
+
+
+def _separator(line: str) -> str | None:
+    """Return what is between the cells of a line; None for any number of blanks."""
+    return next((mark for mark in "\t;," if mark in line), None)
 
 
 def _columns(head: Sequence[str]) -> dict[str, int]:
@@ -159,7 +172,7 @@ def _columns(head: Sequence[str]) -> dict[str, int]:
     return found if timed and {"id", "x", "y"} <= set(found) else {}
 
 
-def _record(file: OpenedScene, report: Report, head: Sequence[str], bare: bool) -> Item:
+def _record(file: OpenedScene, report: Report, head: Sequence[str], bare: bool, top: int) -> Item:
     """Record the columns of a file; return the item that stands for the file."""
     table = WRITTEN if bare else RECORDING
     whole = Item(table.element, Mark(file.source))
@@ -169,7 +182,7 @@ def _record(file: OpenedScene, report: Report, head: Sequence[str], bare: bool) 
     for at, cell in enumerate(head):
         name = cell.strip().strip('"') or f"column {at + 1}"
         if at not in used:
-            mark = Mark(file.source, 0, column, max(1, len(cell)))
+            mark = Mark(file.source, top, column, max(1, len(cell)))
             known = bare or without_unit(name).lower() in _FOLLOWING
             other = whole.add(Item(f"column {at + 1}" if bare else name, mark))
             report.left_out(other, table.rows[1].note if known else UNKNOWN)
@@ -197,7 +210,7 @@ class _Row:
     def number(self, name: str) -> float:
         """Return a cell as a finite number."""
         try:
-            value = float(self.text(name))
+            value = as_number(self.text(name))
         except ValueError:
             value = math.nan
         if not abs(value) <= LARGEST:
@@ -238,11 +251,13 @@ class _Row:
 def _is_recording(file: OpenedScene) -> bool:
     if file.kind != "text":
         return False
-    first = next((line for line in file.text.split("\n") if line.strip()), "")
-    cells = [cell.strip() for cell in _split(first)]
+    lines = file.text.split("\n")
+    first = lines[_top(lines)]
+    between = _separator(first)
+    cells = [cell.strip() for cell in first.split(between)]
     numbers = all(re.fullmatch(r"[-+0-9.eE]+", cell) for cell in cells)
     # Four numbers are a frame, a person and a place in other files.
-    bare = numbers and len(cells) in (3, 5) and _CELLS.search(first) is not None
+    bare = numbers and len(cells) in (3, 5) and between is not None
     return bool(_columns(cells)) or bare
 
 

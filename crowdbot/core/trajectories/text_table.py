@@ -109,6 +109,8 @@ def split(path: Path, text: str) -> TextTable:
         InputError: it is empty, or rows differ in length.
     """
     lines = _plain_viswalk(text.splitlines())
+    if lines and TOLD.fullmatch(lines[0]):
+        lines[0] = ""
     comments = [line for line in lines if line.lstrip().startswith(_COMMENTS)]
     first = next((line for line in lines if line.strip() and line not in comments), "")
     if not first:
@@ -120,7 +122,9 @@ def split(path: Path, text: str) -> TextTable:
         )
     for start, other in _DOCUMENTS.items():
         if first.strip().startswith(start) or first.strip() == "[":
-            raise InputError(f"{path}: is {other}, not a table of rows; convert it to CSV")
+            raise InputError(
+                f"{path}: is {other}, not a table of rows; convert it to CSV with t,id,x,y"
+            )
     mark = _separator(first)
     plain = "\n".join("" if line.lstrip().startswith(_COMMENTS) else line for line in lines)
     rows, numbers = _rows(path, plain, mark)
@@ -252,7 +256,12 @@ _KITTI = 12
 _NEARLY_ONE = 0.02
 _VISWALK = "$PEDESTRIAN:"
 #: How files begin that are not tables.
-_DOCUMENTS = {"{": "JSON", "[{": "JSON", "[[": "JSON", "<": "XML or HTML"}
+_DOCUMENTS = {
+    "{": "JSON", "[{": "JSON", "[[": "JSON", "<": "XML or HTML",
+    "NO_OF_FRAMES": "Qualisys' export of markers", "Format Version,": "Motive's export of markers",
+}  # fmt: skip
+#: First line by which spreadsheets are told what is between cells.
+TOLD = re.compile(r'\s*"?sep=(.)"?\s*', re.IGNORECASE)
 _STARTS = (
     "id", "persid", "personid", "ped_id", "pers", "person", "t", "time", "timestamp", *FRAMES,
 )  # fmt: skip

@@ -70,6 +70,10 @@ def test_recorded_people_have_usual_names_of_columns_units_and_names(tmp_path: P
     file.write_text("\n".join(["pedestrianId simTime startX-PID1 startY-PID1", *blanks]))
     (same,) = imported(file).scenes[0].tables.values()
     assert same == table
+    commas = [f"{who};{t},0;{x},0;{y},0" for t, who, x, y in rows]
+    file.write_text("\n".join(["sep=;", "# a comment", "person;time;x;y", *commas]))
+    (same,) = imported(file).scenes[0].tables.values()
+    assert same == table
     file.write_text("0,7,1,2\n1,7,1.5,2\n")  # a frame, a person and a place, as in other files
     with pytest.raises(SpecError, match=r"E403.*no known format"):
         imported(file)

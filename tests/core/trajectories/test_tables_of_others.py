@@ -432,6 +432,20 @@ def test_matrices_of_kitti_are_refused_with_the_columns_to_take(tmp_path: Path) 
         READ.from_csv(agents=tmp_path / "heads.csv")
 
 
+@pytest.mark.parametrize("head", ["NO_OF_FRAMES\t200", "Format Version,1.23,Take Name,A"])
+def test_exports_of_markers_are_named(tmp_path: Path, head: str) -> None:
+    (tmp_path / "a.csv").write_text(f"{head}\n1,2,3\n")
+    with pytest.raises(InputError, match=r"export of markers, not a table .* with t,id,x,y"):
+        READ.from_csv(agents=tmp_path / "a.csv")
+
+
+def test_a_spreadsheet_says_what_is_between_cells(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("sep=;\nt;id;x;y\n0;1;2,5;3\n1;1;3,5;3\n")
+    agents = READ.from_csv(agents=tmp_path / "a.csv").agents
+    assert agents is not None
+    assert agents.x[:, 0].tolist() == [2.5, 3.5]
+
+
 def test_frames_of_a_video_taken_for_annotations_are_told(tmp_path: Path) -> None:
     rows = (f"{f} 1 {0.05 * f} 0\n" for f in range(20))
     (tmp_path / "a.txt").write_text("".join(rows))
