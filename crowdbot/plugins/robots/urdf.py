@@ -91,6 +91,26 @@ class UrdfFields(RobotSpec):
             raise ValueError("give either 'disc' or 'box'")
         return self
 
+    @model_validator(mode="after")
+    def _parts_weigh(self) -> UrdfFields:
+        if not self.file.is_found:
+            return self
+        try:
+            found = sorted(weightless(self.file.file, self.base, self.turning))
+        except (InputError, OSError):  # told with the file
+            return self
+        if found:
+            raise ValueError(
+                f"link '{found[0]}' weighs nothing, with all that is fixed to it; a part that "
+                "moves needs <inertial> with <mass> and <inertia>"
+            )
+        return self
+
+    @property
+    def turning(self) -> Collection[str]:
+        """Return the joints of wheels that turn; others slide."""
+        return ()
+
     def described(self) -> Mapping[DescribedPart, Collection[str]]:
         """Return the names of links and joints; empty if the file has to be converted first."""
         if not self.file.is_found:
@@ -150,21 +170,10 @@ class UrdfSpec(UrdfFields):
     kind: Literal["urdf"] = "urdf"
     drive: DrivenWheels = Field(description="The driven wheels of a differential drive.")
 
-    @model_validator(mode="after")
-    def _parts_weigh(self) -> UrdfSpec:
-        if not self.file.is_found:
-            return self
-        wheels = [side[0] for side in self.drive.sides]
-        try:
-            found = sorted(weightless(self.file.file, wheels))
-        except (InputError, OSError):  # told with the file
-            return self
-        if found:
-            raise ValueError(
-                f"link '{found[0]}' weighs nothing, with all that is fixed to it; a part that "
-                "moves needs <inertial> with <mass> and <inertia>"
-            )
-        return self
+    @property
+    def turning(self) -> Collection[str]:
+        """Return the joints of the wheels that turn, one of each side."""
+        return [side[0] for side in self.drive.sides]
 
     def named(self) -> Iterator[tuple[DescribedPart, str, tuple[str | int, ...]]]:
         """Yield the base, and the joints that are held and driven."""

@@ -32,13 +32,14 @@ def urdf_names(file: Path) -> dict[DescribedPart, frozenset[str]]:
     }
 
 
-def weightless(file: Path, wheels: Collection[str]) -> Iterator[str]:
+def weightless(file: Path, base: str, wheels: Collection[str]) -> Iterator[str]:
     """Yield the links of a URDF that move and weigh nothing, with all that hangs on them.
 
     In SDFormat each link weighs something. Wrong numbers are left to the build.
 
     Args:
         file: the URDF.
+        base: the link from which the wheels hang.
         wheels: joints of the wheels that turn; all others are held.
 
     Raises:
@@ -59,7 +60,7 @@ def weightless(file: Path, wheels: Collection[str]) -> Iterator[str]:
         name = _hangs_on(link.get("name", ""), above, turning)
         mass = link.find("inertial/mass")
         parts[name] = parts.get(name, 0.0) + (0.0 if mass is None else _mass(mass))
-    hung = {_hangs_on(above[name], above, turning) for name in turning} | turning
+    hung = {_hangs_on(base, above, turning)} | turning
     yield from (name for name, mass in parts.items() if name in hung and mass == 0.0)
 
 
