@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.errors import SpecError
 
 if TYPE_CHECKING:
@@ -40,7 +39,7 @@ def check_against_images(
             wrong += error.diagnostics
     if as_json:
         listed = [{"spec": spec, "scenario": name, **one._asdict()} for spec, name, one in found]
-        say(json.dumps(listed, indent=2))
+        say_json(listed)
     elif found or not wrong:
         say("\n".join(_line(*row) for row in found) or "no occupancy grid in it")
     if wrong:

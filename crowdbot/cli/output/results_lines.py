@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 import textwrap
 from typing import TYPE_CHECKING, Any
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.core.support.text import wrap_name
 
 if TYPE_CHECKING:
@@ -46,7 +45,7 @@ def line_of(summary: GroupSummary) -> dict[str, Any]:
 def print_lines(lines: list[dict[str, Any]], *, as_csv: bool, as_json: bool) -> None:
     """Print lines with the same columns."""
     if as_json:
-        say(json.dumps(lines, indent=2))
+        say_json(lines)
     elif as_csv:
         _print_csv(lines)
     elif lines:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import logging
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say_json
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -46,7 +45,7 @@ def print_result(run: Run, *, as_json: bool, everything: bool) -> None:
             "note: it replaces a run that was recorded differently: %s", ", ".join(run.replaced)
         )
     if as_json:
-        say(json.dumps(_document(run, rows), indent=2))
+        say_json(_document(run, rows))
         return
     _print_text(_summary(run), *_causes(run))
     _print_scores(run, [r.score for r in rows], everything)

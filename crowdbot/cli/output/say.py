@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+from typing import Any
+
 import typer
 
 from crowdbot.errors import printable
@@ -16,3 +19,16 @@ def say(text: object = "", *, err: bool = False, nl: bool = True) -> None:
         nl: True to end the line.
     """
     typer.echo(printable(str(text)), err=err, nl=nl)
+
+
+def say_json(document: object, **options: Any) -> None:
+    """Print a document as indented JSON, as ``--json`` of the commands does.
+
+    Args:
+        document: anything that JSON can hold.
+        options: further arguments of `json.dumps`.
+
+    Raises:
+        ValueError, TypeError: JSON cannot hold it.
+    """
+    say(json.dumps(document, indent=2, **options))

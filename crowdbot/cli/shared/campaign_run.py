@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import re
 from typing import TYPE_CHECKING, Any
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 
 if TYPE_CHECKING:
     from crowdbot.core.campaign.plan import Plan
@@ -73,7 +72,7 @@ def print_plan(plan: Plan, size: int, *, as_json: bool) -> None:
         "out": str(plan.out),
     }
     if as_json:
-        say(json.dumps(facts, indent=2))
+        say_json(facts)
         return
     root = next(p for p in (plan.out, *plan.out.parents) if p.exists())
     free = shutil.disk_usage(root).free

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Sequence
 from datetime import UTC, datetime
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.core.support.text import plural, size_text
@@ -90,7 +89,7 @@ def bundle(
         verdict = verify_bundle(target, registry, suite, (source, ANYWHERE), options)
     if as_json:
         document = {"bundle": str(target), **manifest.model_dump(mode="json")}
-        say(json.dumps(document | ({"check": verdict} if verdict else {}), indent=2))
+        say_json(document | ({"check": verdict} if verdict else {}))
     else:
         _print_manifest(manifest, target)
         if verdict is not None:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.folder_of_bundles import (
     Accept,
     FolderOfBundles,
@@ -63,7 +62,7 @@ def challenge_page(
     files = write_site(out, site, registry)
     if as_json:
         document = {"files": [str(file) for file in files], "left_out": dict(site.left_out)}
-        say(json.dumps(document, indent=2))
+        say_json(document)
     else:
         received = f"{site.received} received, " if site.received else ""
         counts = f"{received}{plural(len(site.entries), 'bundle')}, {plural(len(files), 'file')}"

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import contextlib
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, SuiteArgument, installed
 
@@ -65,7 +64,7 @@ def commit(
             raise
     if as_json:
         document = {"suite": chosen.suite, "commitment": chosen.commitment, "secret": str(path)}
-        say(json.dumps(document | _what(change, print_only), indent=2))
+        say_json(document | _what(change, print_only))
         return
     _say(change, print_only)
     say(f"{chosen.suite}: publish {chosen.commitment}")
@@ -96,7 +95,7 @@ def reveal(
     if as_json:
         document = {"suite": found.suite, "commitment": found.commitment, "seed": found.seed}
         document |= {"salt": found.salt}
-        say(json.dumps(document | _what(change, print_only), indent=2))
+        say_json(document | _what(change, print_only))
         return
     _say(change, print_only)
     say(f"{found.suite}: seed {found.seed} is what was committed to; now: crowdbot lock")
@@ -137,7 +136,7 @@ def check(
         state = "hidden" if found.hidden else "revealed"
     if as_json:
         row = {"suite": found.id, "commitment": found.commitment or None, "draws": state}
-        say(json.dumps(row, indent=2))
+        say_json(row)
         return
     texts = {
         "open": "its draws are open; nothing was committed to",

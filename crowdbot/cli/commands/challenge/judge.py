@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.campaign_run import run_plan, worker_count
 from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import (
@@ -70,7 +69,7 @@ def judge(
             "received": found.received, "waits": found.waits, "left_out": found.left_out,
             "judged": {name: str(path) for name, path in found.judged.items()},
         }  # fmt: skip
-        say(json.dumps(document, indent=2))
+        say_json(document)
     else:
         for name, path in found.judged.items():
             say(f"{name}: {path}")

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.support.text import plural
@@ -38,7 +37,7 @@ def judge_log(
     if known is not None and known.lower() not in (line.sha256 for line in lines):
         raise InputError(f"{path}: no line has the hash {known[:80]}; it is another log")
     if as_json:
-        say(json.dumps([{**x.document, "sha256": x.sha256} for x in lines], indent=2))
+        say_json([{**x.document, "sha256": x.sha256} for x in lines])
         return
     for line in lines:
         about = " ".join(str(line.document.get(k, ""))[:80] for k in ("submission", "team"))

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.folder_of_bundles import Accept, Keys, read_bundles
 from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
@@ -75,7 +74,7 @@ def leaderboard(
             for t in tables
         ]  # fmt: skip
         whole = {"page": str(out), "tables": document, "left_out": dict(found.left_out)}
-        say(json.dumps(whole, indent=2))
+        say_json(whole)
         return
     count = sum(len(table.entries) for table in tables)
     counts = f"{plural(count, 'bundle')}, {plural(len(tables), 'table')}"

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, SuiteArgument, installed
 from crowdbot.cli.shared.run_arguments import AsJson
@@ -73,7 +72,7 @@ def _check(expansion: Expansion, files: LockFiles, registry: Registry, *, as_jso
     if as_json:
         listed = [d.as_dict() for d in found]
         document = {"suite": expansion.suite_id, "ok": not found, "differences": listed}
-        say(json.dumps(document, indent=2))
+        say_json(document)
     elif found:
         for difference in found:
             say(str(difference))
@@ -102,7 +101,7 @@ def _write(
             "draws": draws,
             "drawn": made.drawn,
         }
-        say(json.dumps(document, indent=2))
+        say_json(document)
         return
     say(
         f"{expansion.suite_id}: {plural(scenarios, 'scenario')}, "

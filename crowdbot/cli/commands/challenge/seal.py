@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 from pathlib import Path
 from typing import Annotated
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.cli.shared.run_arguments import AsJson
@@ -71,7 +70,6 @@ def seal(
         target.unlink()
         raise InputError("the sealed copy is another planner: a file is missing; see --include")
     if as_json:
-        say(json.dumps({"file": str(target), "sha256": sealed.sha256,
-                               **sealed.about.model_dump()}, indent=2))  # fmt: skip
+        say_json({"file": str(target), "sha256": sealed.sha256, **sealed.about.model_dump()})
         return
     say(f"{target}: {plural(len(files), 'file')}, sha256 {sealed.sha256}")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import (
     MEMORY_GIB,
@@ -116,7 +116,7 @@ def verify(
     if save:
         save_verification(bundle, document)
     if as_json:
-        say(json.dumps({"bundle": str(bundle), **document}, indent=2))
+        say_json({"bundle": str(bundle), **document})
     else:
         print_verdict(document)
         if save:

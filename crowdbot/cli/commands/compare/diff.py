@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.cli.shared.run_arguments import AsJson
@@ -47,7 +46,7 @@ def diff(
         found["run"] = list(differences(first.run, second.run))
         found["scores"] = list(differences(first.scores, second.scores))
     if as_json:
-        say(json.dumps(_document(first, second, found), indent=2, ensure_ascii=False))
+        say_json(_document(first, second, found), ensure_ascii=False)
     else:
         _print(first, second, found)
     raise typer.Exit(1 if any(found.values()) else 0)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shlex
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import Jobs, NoPlugins, OnlyScenarios, Plugins, installed
 from crowdbot.core.support.text import plural
@@ -49,7 +48,7 @@ def show(
         "held": list(found.held), "made": _makers(found.results.runs),
     }  # fmt: skip
     if as_json:
-        say(json.dumps(about, indent=2))
+        say_json(about)
         return
     say("\n".join(found.held))
     for maker in about["made"]:
@@ -129,7 +128,7 @@ def make(
     size = write_references(out, kept, commands)
     about = {"file": str(out), "bytes": size, "runs": len(kept.runs), "made": len(made.runs)}
     if as_json:
-        say(json.dumps(about, indent=2))
+        say_json(about)
     else:
         say(f"{out}: {plural(len(kept.runs), 'run')}, {len(made.runs)} of them now, {size} bytes")
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import logging
 import os
 import shlex
@@ -14,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 from urllib.parse import quote
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.open_results import Altered, Reference, open_results, suite_id
 from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
@@ -193,7 +192,7 @@ def _tell(
         "crowds": contents.crowds,
         "ranks_by_crowd": None if contents.ranks is None else contents.ranks.as_json(),
     }
-    say(json.dumps(document, indent=2, ensure_ascii=False))
+    say_json(document, ensure_ascii=False)
 
 
 def _of_floors(checks: Sequence[FloorCheck]) -> list[str]:

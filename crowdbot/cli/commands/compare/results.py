@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -13,7 +12,7 @@ from typer.core import TyperGroup
 
 from crowdbot.cli.output.results_by_planner import print_by_planner
 from crowdbot.cli.output.results_lines import line_of, print_lines
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.open_results import (
     Altered,
     Reference,
@@ -186,7 +185,7 @@ def failures(
 
     found = Results.open(out).failures
     if as_json:
-        say(json.dumps([asdict(f) for f in found], indent=2))
+        say_json([asdict(f) for f in found])
         return
     for failure in found:
         name = f"{failure.suite}/{failure.scenario} {failure.planner} seed {failure.seed}"
@@ -247,7 +246,7 @@ def atlas(
         atomic_write(md, atlas_page(entries))
     if as_json:
         lines = named_by_suite({suite: map(asdict, some) for suite, some in entries.items()})
-        say(json.dumps(lines, indent=2))
+        say_json(lines)
     elif md is None:
         say(atlas_page(entries), nl=False)
 

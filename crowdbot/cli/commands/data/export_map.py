@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, ScenarioSet, installed
 from crowdbot.cli.shared.run_arguments import ScenarioArgument, SpecArgument
@@ -60,7 +59,7 @@ def export_map(
     if as_json:
         rows, columns = grid.cells.shape
         listed = {"files": [str(folder / n) for n in files], "cells": [columns, rows]}
-        say(json.dumps({**listed, "resolution": resolution}, indent=2))
+        say_json({**listed, "resolution": resolution})
     else:
         say("\n".join(str(folder / name) for name in files))
 

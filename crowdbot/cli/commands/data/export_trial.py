@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, ScenarioSet, check_ending, installed
 from crowdbot.cli.shared.run_arguments import ScenarioArgument, SpecArgument
@@ -43,7 +42,7 @@ def export_trial(
         atomic_write(path, text)
     if as_json:
         entries = [entry.as_dict() for entry in made.report.entries]
-        say(json.dumps({"files": [str(p) for p in files], "report": entries}, indent=2))
+        say_json({"files": [str(p) for p in files], "report": entries})
         return
     for entry in made.report.entries:
         say(f"{entry.ours}: {entry.note}")

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import argument, option, switch
 
 
@@ -32,7 +31,7 @@ def weights(
     written = {} if out is None else {"out": str(out), "out_sha256": file_digest(out)}
     shapes = {name: list(values.shape) for name, values in found.items()}
     if as_json:
-        say(json.dumps({**read, **written, "weights": shapes}, indent=2))
+        say_json({**read, **written, "weights": shapes})
         return
     for name, shape in shapes.items():
         say(f"{name}  {' x '.join(map(str, shape)) or 'one number'}")

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import logging
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 
@@ -40,7 +39,7 @@ def listing(
     registry = installed(plugin, no_plugins, strict=False)
     registry.import_components()
     if as_json:
-        say(json.dumps(as_dicts(registry), indent=2))
+        say_json(as_dicts(registry))
         return
     say(as_text(registry))
     if _LOG.isEnabledFor(logging.DEBUG):
@@ -69,7 +68,7 @@ def show(
         known = {c.kind for c in everything}
         raise UnknownNameError("kind", kind, known, registry.why_absent(kind))
     if as_json:
-        say(json.dumps([as_dict(c, registry) for c in found], indent=2))
+        say_json([as_dict(c, registry) for c in found])
     else:
         say("\n\n".join(as_text(c, registry) for c in found))
 
@@ -100,7 +99,7 @@ def check(
         with stdout_to_stderr():
             results = [r for c in components for r in run_checks(c, registry)]
     if as_json:
-        say(json.dumps([r.as_dict() for r in results], indent=2))
+        say_json([r.as_dict() for r in results])
     else:
         chatty, all_lines = (_LOG.isEnabledFor(n) for n in (logging.INFO, logging.DEBUG))
         say(as_table(results, passed=chatty, all_lines=all_lines))

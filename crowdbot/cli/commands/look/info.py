@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say_json
 from crowdbot.cli.shared.option import argument
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.errors import InputError, printable
@@ -40,7 +39,7 @@ def info(
             }
             for t in found.topics
         ]  # fmt: skip
-        say(json.dumps({**about, "topics": topics}, indent=2))
+        say_json({**about, "topics": topics})
         return
     _show(about, found)
 

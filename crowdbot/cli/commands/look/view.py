@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import threading
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.serving.serve_arguments import AllowOrigin
 from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, ScenarioSet, check_ending, installed
@@ -87,7 +86,7 @@ def view(
             installed(plugin, no_plugins), spec, pattern, out, overrides or []
         )
     if as_json:
-        say(json.dumps({"path": str(path), "facts": facts}, indent=2, ensure_ascii=False))
+        say_json({"path": str(path), "facts": facts}, ensure_ascii=False)
     else:
         say(path)
     if open_:

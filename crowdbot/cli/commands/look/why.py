@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.open_results import Altered, open_results
 from crowdbot.cli.shared.option import argument, option
 from crowdbot.cli.shared.options import check_ending
@@ -105,7 +104,7 @@ def _write(
 
 def _tell(lines: Sequence[object], out: Path | None, as_json: bool) -> None:
     if as_json:
-        say(json.dumps(lines, indent=2, ensure_ascii=False))
+        say_json(lines, ensure_ascii=False)
         return
     say("\n".join(map(str, lines)))
     if out is not None:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.campaign_run import print_plan, read_seeds, run_plan, worker_count
 from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import (
@@ -113,7 +112,7 @@ def campaign(
         say("interrupted; the same command makes the runs that are missing", err=True)
         raise
     if as_json:
-        say(json.dumps(_document(state), indent=2))
+        say_json(_document(state))
     if state.exit_code:
         raise typer.Exit(state.exit_code)
 

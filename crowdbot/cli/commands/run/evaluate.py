@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from fnmatch import fnmatch
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.errors import UnknownNameError, UsageError
@@ -191,7 +190,7 @@ def _tell(results: list[Rescored], out: Path | None, as_json: bool) -> None:
     if out is not None:
         write_file(out, results)
     if as_json:
-        say(json.dumps([as_document(r) for r in results], indent=2, allow_nan=False))
+        say_json([as_document(r) for r in results], allow_nan=False)
     elif out is None:
         for result in results:
             if not result.error:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.options import NoPlugins, Plugins, check_ending, installed
 from crowdbot.core.support.text import plural
@@ -70,7 +69,7 @@ def plan(
             "unequal_successions": after,
             "order_files": [str(p) for p in written],
         }
-        say(json.dumps(document, indent=2))
+        say_json(document)
         return
     for s in states:
         say(f"{s.participant}: {' '.join(s.order)}; {s.done} of {s.count} steps")
@@ -148,7 +147,7 @@ def results(
     if out is not None:
         write_csv(out, rows)
     if as_json:
-        say(json.dumps(rows, indent=2))
+        say_json(rows)
         return
     for condition in found.spec.conditions:
         own = [r for r in rows if r["condition"] == condition]
@@ -183,7 +182,7 @@ def report(
     findings = findings_of(found, rows, scores or ())
     write_study_report(out, found, rows, findings, registry)
     if as_json:
-        say(json.dumps(as_document(findings), indent=2))
+        say_json(as_document(findings))
         return
     drives = plural(len(rows), "drive")
     say(f"{drives}, {plural(len(findings), 'score')} compared; wrote {out}")

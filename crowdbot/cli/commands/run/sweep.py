@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from enum import StrEnum
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import option
 from crowdbot.cli.shared.options import Jobs, NoPlugins, Plugins, SuiteArgument, installed
 from crowdbot.cli.shared.run_arguments import AsJson
@@ -109,7 +108,7 @@ def sweep(
         raise
     atomic_write(out / PAGE, render(found))
     if as_json:
-        say(json.dumps(plain(found), indent=2))
+        say_json(plain(found))
         return
     for line in verdict(found):
         say(line)

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Annotated
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import argument, option, switch
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.errors import InputError, UnknownNameError
@@ -55,7 +55,7 @@ def docs(
     if page is None:
         titles = {name: _title(folder / f"{name}.md") for name in pages(folder)}
         if as_json:
-            say(json.dumps(titles, indent=2, ensure_ascii=False))
+            say_json(titles, ensure_ascii=False)
         else:
             width = max(map(len, titles))
             say("\n".join(f"{n:<{width}}  {t}" for n, t in titles.items()))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import logging
 from dataclasses import asdict
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import option, switch
 from crowdbot.cli.shared.run_arguments import AsJson
 
@@ -43,7 +42,7 @@ def doctor(
             say("simulating for a moment ...", err=True)
         findings.append(_doctor.self_test())
     if as_json:
-        say(json.dumps([f._asdict() for f in findings], indent=2))
+        say_json([f._asdict() for f in findings])
     else:
         quiet = logging.getLogger("crowdbot").level > logging.INFO
         for found in findings:
@@ -61,7 +60,7 @@ def _print_licences(*, as_json: bool) -> None:
 
     found = dependencies()
     if as_json:
-        say(json.dumps([asdict(one) for one in found], indent=2))
+        say_json([asdict(one) for one in found])
         return
     for one in found:
         extra = " (extra)" if one.extra else ""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.output.scenario_list import hash_of, print_scenarios
 from crowdbot.cli.shared.option import option, switch
 from crowdbot.cli.shared.options import EveryScenarioSet, NoPlugins, Plugins, installed
@@ -51,7 +51,7 @@ def expand(
         return
     scenarios = _matching(expansion, only or ())
     if as_json and not count:
-        say(json.dumps([_row(expansion, s, registry) for s in scenarios], indent=2))
+        say_json([_row(expansion, s, registry) for s in scenarios])
         return
     print_scenarios(scenarios, registry, count=count)
     if expansion.round is not None and not count:

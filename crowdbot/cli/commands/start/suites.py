@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from crowdbot.cli.output.say import say
+from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.support.text import plural
@@ -33,7 +32,7 @@ def suites(
     registry = installed(plugin, no_plugins)
     found = [_about(name, registry) for name in suite_names(registry)]
     if as_json:
-        say(json.dumps(found, indent=2))
+        say_json(found)
         return
     for one in found:
         say(f"{one['suite']}: {one['title']}")
