@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from crowdbot.plugin import RobotLimits
 from crowdbot.plugins.robots.limits import LimitedRobotSpec
+from crowdbot.plugins.robots.urdf import UrdfFields
 
 
-def limits_of(spec: LimitedRobotSpec, *, sideways: bool = False) -> RobotLimits:
+def limits_of(spec: LimitedRobotSpec | UrdfFields, *, sideways: bool = False) -> RobotLimits:
     """Return limits with equal speed back and ahead, and also sideways if ``sideways``."""
     return RobotLimits(
         v_min=-spec.max_speed,

@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 import crowdbot.plugins.robots.sdf as sdf
-from crowdbot.plugin import DifferentialDrive, RobotModel
+from crowdbot.plugin import RobotModel
 from crowdbot.plugins.robots.body_part import (
     BLACK,
     BLUE,
@@ -68,12 +68,7 @@ def build(spec: QoloSpec) -> RobotModel:
         description=_text(body, spec.radius, WHEEL._replace(effort=WHEEL.effort * share)),
         base="base_link",
         base_height=WHEEL.radius,
-        drive=DifferentialDrive(
-            left_joint="left_wheel_joint",
-            right_joint="right_wheel_joint",
-            command_radius=WHEEL.radius,
-            track=TRACK,
-        ),
+        drive=sdf.drive(TRACK, WHEEL.radius),
         limits=limits_of(spec),
         footprint_radius=spec.radius,
         footprint=np.array([[FRONT, 0.0], [REAR, 0.0]]),
@@ -100,6 +95,5 @@ def _text(body: list[Part], radius: float, wheel: sdf.Wheel) -> str:
             ),
             sdf.slider("caster", (CASTER_X, 0.0, CASTER_RADIUS - wheel.radius), CASTER_RADIUS),
         ),
-        sdf.wheel("left", 0.5 * TRACK, 0.0, wheel),
-        sdf.wheel("right", -0.5 * TRACK, 0.0, wheel),
+        sdf.wheels(TRACK, 0.0, wheel),
     )  # fmt: skip

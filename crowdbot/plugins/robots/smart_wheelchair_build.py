@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 import crowdbot.plugins.robots.sdf as sdf
-from crowdbot.plugin import DifferentialDrive, RobotModel
+from crowdbot.plugin import RobotModel
 from crowdbot.plugins.robots.body_part import (
     BLACK,
     BLUE,
@@ -86,12 +86,7 @@ def build(spec: SmartWheelchairSpec) -> RobotModel:
         description=_text(body, spec, WHEEL._replace(effort=WHEEL.effort * share)),
         base="base_link",
         base_height=WHEEL.radius,
-        drive=DifferentialDrive(
-            left_joint="left_wheel_joint",
-            right_joint="right_wheel_joint",
-            command_radius=WHEEL.radius,
-            track=TRACK,
-        ),
+        drive=sdf.drive(TRACK, WHEEL.radius),
         limits=limits_of(spec),
         footprint_radius=math.hypot(across, along),
         footprint=np.array(corners),
@@ -114,6 +109,5 @@ def _text(body: list[Part], spec: SmartWheelchairSpec, wheel: sdf.Wheel) -> str:
                 for i, (x, y) in enumerate(_caster_places())
             ),
         ),
-        sdf.wheel("left", 0.5 * TRACK, 0.0, wheel),
-        sdf.wheel("right", -0.5 * TRACK, 0.0, wheel),
+        sdf.wheels(TRACK, 0.0, wheel),
     )

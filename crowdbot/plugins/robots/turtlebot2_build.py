@@ -7,7 +7,7 @@ are in `crowdbot.plugins.robots.turtlebot2_parts`.
 from __future__ import annotations
 
 import crowdbot.plugins.robots.sdf as sdf
-from crowdbot.plugin import DifferentialDrive, RobotModel
+from crowdbot.plugin import RobotModel
 from crowdbot.plugins.robots.body_part import balance
 from crowdbot.plugins.robots.limits_build import limits_of
 from crowdbot.plugins.robots.turtlebot2 import Turtlebot2Spec
@@ -34,12 +34,7 @@ def build(spec: Turtlebot2Spec) -> RobotModel:
         description=_sdf(spec.mass),
         base="base_link",
         base_height=BASE_HEIGHT,
-        drive=DifferentialDrive(
-            left_joint="left_wheel_joint",
-            right_joint="right_wheel_joint",
-            command_radius=WHEEL_RADIUS,
-            track=TRACK,
-        ),
+        drive=sdf.drive(TRACK, WHEEL_RADIUS),
         limits=limits_of(spec),
         footprint_radius=BODY_RADIUS,
         height=BODY_HEIGHT,
@@ -63,8 +58,5 @@ def _sdf(mass: float) -> str:
             ),
             *(sdf.slider(f"{n}_caster", (x, 0.0, foot), CASTER_RADIUS) for n, x in CASTERS.items()),
         ),
-        *(
-            sdf.wheel(side, y, WHEEL_RADIUS - BASE_HEIGHT, WHEEL)
-            for side, y in (("left", 0.5 * TRACK), ("right", -0.5 * TRACK))
-        ),
+        sdf.wheels(TRACK, WHEEL_RADIUS - BASE_HEIGHT, WHEEL),
     )

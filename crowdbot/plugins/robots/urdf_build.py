@@ -13,10 +13,10 @@ from crowdbot.plugin import (
     HolonomicDrive,
     PluginError,
     PublishedWheel,
-    RobotLimits,
     RobotModel,
     read_published,
 )
+from crowdbot.plugins.robots.limits_build import limits_of
 from crowdbot.plugins.robots.urdf import HolonomicUrdfSpec, UrdfFields, UrdfSpec
 
 
@@ -78,15 +78,7 @@ def _model(
         base=spec.base,
         base_height=base_height,
         drive=drive,  # type: ignore[arg-type]
-        limits=RobotLimits(
-            v_min=-spec.max_speed,
-            v_max=spec.max_speed,
-            vy_max=spec.max_speed if sideways else 0.0,
-            w_max=spec.max_yaw_rate,
-            a_max=spec.max_acceleration,
-            alpha_max=spec.max_yaw_acceleration,
-            command_timeout=spec.command_timeout,
-        ),
+        limits=limits_of(spec, sideways=sideways),
         footprint_radius=reach,
         footprint=None if spec.disc is not None else corners,
         height=spec.height,
