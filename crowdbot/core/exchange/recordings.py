@@ -17,7 +17,8 @@ from crowdbot.core.exchange.scene import Draft, around, id_of
 from crowdbot.core.exchange.trial.replays import HEADER
 from crowdbot.core.trajectories.data_sets.homography import VideoScale, projected
 from crowdbot.core.trajectories.raw_table import as_number
-from crowdbot.core.trajectories.table_columns import FRAMES, USUAL_NAMES, unit_of, without_unit
+from crowdbot.core.trajectories.table_columns.names import FRAMES, USUAL_NAMES
+from crowdbot.core.trajectories.table_columns.units import unit_of, without_unit
 from crowdbot.core.trajectories.text_table import TOLD
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
 from crowdbot.errors import SpecError

@@ -27,7 +27,8 @@ from crowdbot.core.trajectories.recording_options import (
     TopicOptions,
     takes,
 )
-from crowdbot.core.trajectories.table_columns import frame_table, in_seconds
+from crowdbot.core.trajectories.table_columns.frame_table import frame_table
+from crowdbot.core.trajectories.table_columns.frames import in_seconds
 from crowdbot.core.trajectories.text_table import read_table
 from crowdbot.errors import InputError, RecordingWarning
 

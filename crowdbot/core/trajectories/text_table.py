@@ -16,14 +16,13 @@ import numpy as np
 from crowdbot.core.support.text_files import LARGEST_TABLE, input_text
 from crowdbot.core.trajectories.message_columns import joined
 from crowdbot.core.trajectories.raw_table import Cells, ColumnNames, RawTable, as_number
-from crowdbot.core.trajectories.table_columns import (
-    FRAMES,
-    chosen,
-    completed,
+from crowdbot.core.trajectories.table_columns.completed import completed
+from crowdbot.core.trajectories.table_columns.frames import whole_numbers
+from crowdbot.core.trajectories.table_columns.names import FRAMES, chosen
+from crowdbot.core.trajectories.table_columns.units import (
     length_unit,
     scaled,
     unit_of,
-    whole_numbers,
     without_unit,
     without_units,
 )

@@ -15,14 +15,10 @@ from crowdbot.core.trajectories.data_sets.homography import Homography, matrix_o
 from crowdbot.core.trajectories.data_sets.splines import is_spline_file, spline_table
 from crowdbot.core.trajectories.plausibility.times import CREEPING
 from crowdbot.core.trajectories.raw_table import RawTable
-from crowdbot.core.trajectories.table_columns import (
-    FRAMES,
-    not_used,
-    refuse_exchanged,
-    unit_in,
-    whole_numbers,
-    without_unit,
-)
+from crowdbot.core.trajectories.table_columns.completed import not_used
+from crowdbot.core.trajectories.table_columns.frames import refuse_exchanged, whole_numbers
+from crowdbot.core.trajectories.table_columns.names import FRAMES
+from crowdbot.core.trajectories.table_columns.units import unit_in, without_unit
 from crowdbot.core.trajectories.text_table import split
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError, UnknownNameError

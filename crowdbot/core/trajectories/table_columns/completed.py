@@ -1,0 +1,111 @@
+"""Tables in rows with notes on the columns that are not used."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from crowdbot.core.trajectories.raw_table import Cells, RawTable
+from crowdbot.core.trajectories.table_columns.units import without_unit
+from crowdbot.core.trajectories.table_columns.wide import columns_of_people, in_rows
+from crowdbot.errors import InputError
+
+#: Columns that say nothing about the plane, or number the rows.
+_NEEDLESS = ("z", "tz", "pos_z", "pz", "point", "geometry", "", "index", "unnamed: 0")
+_HEIGHT = re.compile(r"(?:^|[./_])position[./_]z$|^p_\w+_z$")
+#: Columns that say what moves, and what they say of people, in lower case.
+_KINDS = ("type", "object_type", "agent_type", "class", "label", "category", "classification")
+_PEOPLE = {
+    "ped",
+    "peds",
+    "pedestrian",
+    "pedestrians",
+    "person",
+    "people",
+    "human",
+    "adult",
+    "child",
+}
+#: Most columns that are told by name.
+_MOST_NAMED = 12
+#: Least extent of x and z, m, if y seems to be the height.
+_FLAT = 0.5
+
+
+def not_used(columns: Iterable[str]) -> list[str]:
+    """Return a sentence that names columns which are not read, if they could matter."""
+    names = ((column, without_unit(column).lower()) for column in columns)
+    left = [column for column, name in names if name not in _NEEDLESS and not _HEIGHT.search(name)]
+    if not left:
+        return []
+    more = f" and {len(left) - _MOST_NAMED} more" if len(left) > _MOST_NAMED else ""
+    return [
+        f"the column{'s' if len(left) > 1 else ''} {', '.join(left[:_MOST_NAMED])}{more} "
+        f"{'are' if len(left) > 1 else 'is'} not used"
+    ]
+
+
+def completed(
+    table: RawTable,
+    header: Sequence[str],
+    cells: Callable[[str], Cells],
+    unit: float,
+    used: Iterable[int],
+    *,
+    wide: bool,
+) -> RawTable:
+    """Return a table in rows, whose notes name the columns that are not used.
+
+    Args:
+        table: what was found under our names.
+        header: names of its columns, without units.
+        cells: returns a column by name.
+        unit: metres in the unit of lengths.
+        used: places of the columns that were found.
+        wide: True if it may have two columns for each person.
+
+    Raises:
+        InputError: a person has two columns of one name, or a number has x without y.
+    """
+    people = columns_of_people(table, header) if wide else {}
+    kinds, others = _not_people(header, cells) if wide else (set(), [])
+    read = {*used, *kinds, *(header.index(c) for axes in people.values() for c in axes.values())}
+    notes = not_used(table.header[i] for i in range(len(header)) if i not in read)
+    notes += others + _height_is_y(table, header, cells)
+    table = replace(table, notes=[*table.notes, *(f"{table.name}: {note}" for note in notes)])
+    return in_rows(table, people, cells, unit) if people else table
+
+
+def _not_people(header: Sequence[str], cells: Callable[[str], Cells]) -> tuple[set[int], list[str]]:
+    """Return the places of columns of kinds, and a sentence if they hold others than people."""
+    places = {i for i, column in enumerate(header) if column.lower() in _KINDS}
+    found = {i: sorted({str(cell).strip() for cell in cells(header[i])}) for i in places}
+    notes = [
+        f"the column {header[i]} says {', '.join(kinds[:6])}: all rows are read as people; leave "
+        "out those that are not"
+        for i, kinds in found.items()
+        if not {kind.lower() for kind in kinds} <= _PEOPLE
+    ]
+    return places, notes
+
+
+def _height_is_y(
+    table: RawTable, header: Sequence[str], cells: Callable[[str], Cells]
+) -> list[str]:
+    """Return a sentence if y never changes and z does: motion capture and Unity have y upwards."""
+    z = next((column for column in header if column.lower() in ("z", "tz")), None)
+    if z is None or not {"x", "y"} <= set(table.columns):
+        return []
+    try:
+        x, y = table.numbers("x"), table.numbers("y")
+        depth = RawTable(table.name, {"z": cells(z)}, table.lines).numbers("z")
+    except InputError:
+        return []  # told where the column is read; nothing reads z
+    spans = [float(np.nanmax(v) - np.nanmin(v)) if np.isfinite(v).any() else 0.0
+             for v in (x, y, depth)]  # fmt: skip
+    if spans[1] > 0.0 or min(spans[0], spans[2]) < _FLAT:
+        return []
+    return [f"y is {y[0]:g} m in all rows, and z is not: is y upwards? Exchange their names"]
