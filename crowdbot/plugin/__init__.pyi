@@ -102,10 +102,10 @@ from crowdbot.core.trajectories.preprocess import travel_time as travel_time
 from crowdbot.core.trajectories.preprocess import truncate_at_arrival as truncate_at_arrival
 from crowdbot.core.trajectories.preprocess import yaw_rate as yaw_rate
 from crowdbot.core.trajectories.questionnaires import Questionnaires as Questionnaires
-from crowdbot.core.trajectories.trajectories import AgentTracks as AgentTracks
-from crowdbot.core.trajectories.trajectories import ContactEvents as ContactEvents
-from crowdbot.core.trajectories.trajectories import RobotTrack as RobotTrack
-from crowdbot.core.trajectories.trajectories import Trips as Trips
+from crowdbot.core.trajectories.tracks import AgentTracks as AgentTracks
+from crowdbot.core.trajectories.tracks import ContactEvents as ContactEvents
+from crowdbot.core.trajectories.tracks import RobotTrack as RobotTrack
+from crowdbot.core.trajectories.tracks import Trips as Trips
 from crowdbot.core.types.arrays import Array as Array
 from crowdbot.core.types.arrays import Indices as Indices
 from crowdbot.core.types.arrays import Mask as Mask

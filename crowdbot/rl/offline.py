@@ -23,7 +23,8 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.run_directory import RECORDING, SCENARIO
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.support.ticks import TICK
-from crowdbot.core.trajectories.trajectories import RobotTrack, Trajectories
+from crowdbot.core.trajectories.tracks import RobotTrack
+from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array, Indices
 from crowdbot.core.types.robot import robot_body
 from crowdbot.errors import InputError

@@ -11,7 +11,8 @@ import numpy as np
 
 from crowdbot.core.trajectories.commands import Commands
 from crowdbot.core.trajectories.preprocess import rows_of
-from crowdbot.core.trajectories.trajectories import AgentTracks, RobotTrack, Trajectories
+from crowdbot.core.trajectories.tracks import AgentTracks, RobotTrack
+from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.person_task import PersonSide
 

@@ -21,7 +21,7 @@ from crowdbot.core.trajectories.encounters import (
 )
 from crowdbot.core.trajectories.preprocess import truncate_at_arrival
 from crowdbot.core.trajectories.questionnaires import TLX_SCALES
-from crowdbot.core.trajectories.trajectories import AgentTracks, RobotTrack
+from crowdbot.core.trajectories.tracks import AgentTracks, RobotTrack
 from crowdbot.core.types.person_task import PersonTask, TaskPerson
 from scripts.metric_pictures.figure import PERSON, QUIET, ROBOT, Array, Figure, number
 

@@ -18,7 +18,8 @@ from crowdbot.core.replay.encode_scans import encode_scans
 from crowdbot.core.replay.encode_signals import encode_signals
 from crowdbot.core.replay.pack import pack_motion, pack_words, quantise
 from crowdbot.core.replay.shown_run import Scenery, ShownRun
-from crowdbot.core.trajectories.trajectories import AgentTracks, Trajectories
+from crowdbot.core.trajectories.tracks import AgentTracks
+from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
 
 #: Faster steps are teleports, m/s (metric specification, 1.3).

@@ -12,7 +12,8 @@ from crowdbot.core.replay.other_track import OtherTrack, Seen, motion_of, motion
 from crowdbot.core.replay.pack import pack_words
 from crowdbot.core.replay.shown_run import ShownRun
 from crowdbot.core.trajectories.person_track import members_of
-from crowdbot.core.trajectories.trajectories import AgentTracks, Trajectories
+from crowdbot.core.trajectories.tracks import AgentTracks
+from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
 
 

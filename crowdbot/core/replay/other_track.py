@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.trajectories.trajectories import RobotTrack, Trajectories
+from crowdbot.core.trajectories.tracks import RobotTrack
+from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
 
 #: A part of the robot: outline (K, 2), m, and colour.

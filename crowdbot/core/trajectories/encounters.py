@@ -21,7 +21,8 @@ from crowdbot.core.trajectories.preprocess import (
     valid_robot_steps,
     wrap,
 )
-from crowdbot.core.trajectories.trajectories import AgentTracks, RobotTrack, Trajectories
+from crowdbot.core.trajectories.tracks import AgentTracks, RobotTrack
+from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array, Mask
 
 

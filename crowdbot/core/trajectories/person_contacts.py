@@ -22,7 +22,8 @@ from crowdbot.core.trajectories.encounters import (
 )
 from crowdbot.core.trajectories.fault.touch_point import touch_point
 from crowdbot.core.trajectories.preprocess import TIME_TOLERANCE, inf_to_nan
-from crowdbot.core.trajectories.trajectories import ContactEvents, Trajectories
+from crowdbot.core.trajectories.tracks import ContactEvents
+from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
 
 

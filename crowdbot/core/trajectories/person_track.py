@@ -19,7 +19,8 @@ from crowdbot.core.geometry.stance import (
 from crowdbot.core.trajectories.encounters import robot_of, robot_velocities
 from crowdbot.core.trajectories.footprint_of_run import footprint_of
 from crowdbot.core.trajectories.preprocess import truncate_at_arrival
-from crowdbot.core.trajectories.trajectories import AgentTracks, Trajectories
+from crowdbot.core.trajectories.tracks import AgentTracks
+from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array, Mask
 from crowdbot.core.types.person_task import PersonTask, TaskPerson
 

@@ -12,13 +12,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from crowdbot.core.support.immutable import immutable
-from crowdbot.core.trajectories.trajectories import (
-    AgentTracks,
-    ContactEvents,
-    RobotTrack,
-    Trajectories,
-    Trips,
-)
+from crowdbot.core.trajectories.tracks import AgentTracks, ContactEvents, RobotTrack, Trips
+from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array, Indices, Mask
 from crowdbot.errors import InputError
 

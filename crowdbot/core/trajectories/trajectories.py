@@ -13,26 +13,26 @@ from typing import Any, Literal, TypeVar, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core.support.arguments import expect, mapping_of, number_of, point_of
+from crowdbot.core.support.arguments import expect
 from crowdbot.core.support.immutable import immutable, immutable_fields
 from crowdbot.core.trajectories.commands import Commands
 from crowdbot.core.trajectories.from_recordings import FromRecordings
-from crowdbot.core.trajectories.own_recordings import arrival
+from crowdbot.core.trajectories.given_tracks import (
+    agent_tracks,
+    contact_events,
+    given_arrival,
+    given_speed_limit,
+    read_only,
+    robot_track,
+    signals_of,
+    trips_of,
+)
+from crowdbot.core.trajectories.tracks import AgentTracks, ContactEvents, RobotTrack, Trips
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.person_task import TaskPerson
 from crowdbot.errors import InputError
 
 _Cached = TypeVar("_Cached")
-
-
-def _read_only(values: ArrayLike, dtype: Any = np.float64) -> NDArray[Any]:
-    if np.iscomplexobj(values):
-        raise InputError("trajectories: complex numbers where real ones are wanted")
-    try:
-        array = np.asarray(values, dtype=dtype)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"trajectories: not an array of numbers: {error}") from error
-    return immutable(array if array.flags.forc else array.copy("K"))
 
 
 def _for_all(value: _Cached) -> _Cached:
@@ -45,70 +45,6 @@ def _for_all(value: _Cached) -> _Cached:
     if is_dataclass(found):
         return cast(_Cached, immutable_fields(cast(Any, found)))
     return value
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RobotTrack:
-    """The robot's track: x, y, theta, v, w are (N,); m, rad, m/s signed forward, rad/s.
-
-    ``vx``, ``vy`` (N,) are the world velocity (m/s) of a robot that also moves sideways; without
-    them it is ``v`` along ``theta``.
-    """
-
-    x: Array
-    y: Array
-    theta: Array
-    v: Array
-    w: Array
-    radius: float
-    mass: float
-    goal_time: float | None
-    goal: tuple[float, float] | None
-    goal_radius: float
-    vx: Array | None = None
-    vy: Array | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AgentTracks:
-    """Tracks of people: id, radius, mass (M,); x, y, vx, vy (N, M), NaN = absent; jump (N-1, M)."""
-
-    id: NDArray[np.int64]
-    x: Array
-    y: Array
-    vx: Array
-    vy: Array
-    radius: Array
-    mass: Array
-    jump: NDArray[np.bool_] | None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Trips:
-    """People's trips to one goal: agent (id), t0, t1 (s), reached; each (K,)."""
-
-    agent: NDArray[np.int64]
-    t0: Array
-    t1: Array
-    reached: NDArray[np.bool_]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ContactEvents:
-    """Contacts of the robot, each (K,).
-
-    t0, t1 (s), agent id (-1: a wall; -2, -3, …: another robot of the run), impulse (N s), peak
-    force (N), relative speed before (m/s), bearing of the robot's first point of contact in its
-    frame (rad; NaN: unknown), named by `crowdbot.core.geometry.footprint.body_side`.
-    """
-
-    t0: Array
-    t1: Array
-    agent: NDArray[np.int64]
-    impulse: Array
-    peak_force: Array
-    relative_speed: Array
-    bearing: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -208,19 +144,19 @@ class Trajectories(FromRecordings):
         if person is not None:
             expect("person", person, TaskPerson)
         arguments = locals()
-        arguments["robot_goal_time"] = _arrival(arguments)
+        arguments["robot_goal_time"] = given_arrival(arguments)
         run = cls(
-            t=_read_only(t),
-            robot=_robot(arguments) if robot_x is not None else None,
-            agents=_agents(arguments) if agent_x is not None else None,
-            trips=_trips(arguments) if trip_agent is not None else None,
-            goal_zone=None if goal_zone is None else _read_only(goal_zone),
-            contacts=None if contacts is None else _contacts(contacts),
-            walls=None if walls is None else _read_only(walls),
-            planner_step_time=None if planner_step_time is None else _read_only(planner_step_time),
-            robot_footprint=None if robot_footprint is None else _read_only(robot_footprint),
-            robot_speed_limit=_speed_limit(robot_speed_limit),
-            signals=_signals(signals or {}),
+            t=read_only(t),
+            robot=robot_track(arguments) if robot_x is not None else None,
+            agents=agent_tracks(arguments) if agent_x is not None else None,
+            trips=trips_of(arguments) if trip_agent is not None else None,
+            goal_zone=None if goal_zone is None else read_only(goal_zone),
+            contacts=None if contacts is None else contact_events(contacts),
+            walls=None if walls is None else read_only(walls),
+            planner_step_time=None if planner_step_time is None else read_only(planner_step_time),
+            robot_footprint=None if robot_footprint is None else read_only(robot_footprint),
+            robot_speed_limit=given_speed_limit(robot_speed_limit),
+            signals=signals_of(signals or {}),
             person=person,
         )
         _check(run)
@@ -238,23 +174,6 @@ def cached_beside(
     return done[id(other)][1]
 
 
-def _signals(signals: Mapping[str, ArrayLike]) -> dict[str, Array]:
-    """Return signals by name.
-
-    Raises:
-        InputError: a signal is not a table of times and values.
-    """
-    found = {}
-    for name, rows in mapping_of("signals", signals, "names to arrays").items():
-        found[name] = _read_only(rows)
-        if found[name].size and (found[name].ndim != 2 or found[name].shape[1] != 2):
-            raise InputError(
-                f"trajectories: signal '{name}' has shape {found[name].shape}, expected (P, 2): "
-                "times and values"
-            )
-    return found
-
-
 def _check_travellers(run: Trajectories) -> None:
     """Refuse trips of unknown people, which would be counted with wrong lengths."""
     if run.trips is None or run.agents is None:
@@ -263,121 +182,6 @@ def _check_travellers(run: Trajectories) -> None:
     if len(unknown):
         some = ", ".join(map(str, unknown[:3])) + (", …" if len(unknown) > 3 else "")
         raise InputError(f"trajectories: trip_agent has ids that no agent_id has: {some}")
-
-
-def _require(arguments: Mapping[str, Any], *names: str) -> None:
-    missing = [n for n in names if arguments[n] is None]
-    if missing:
-        raise InputError(f"trajectories: {', '.join(missing)} missing")
-
-
-def _arrival(arguments: Mapping[str, Any]) -> Any:
-    """Return when the robot arrived, s, derived from goal or goal zone unless given.
-
-    Raises:
-        InputError: it is a text other than ``derived``.
-    """
-    given = arguments["robot_goal_time"]
-    if not isinstance(given, str):
-        return given
-    if given != "derived":
-        raise InputError(f"robot_goal_time is a time in s, None or 'derived', not {given!r}")
-    goal, zone = arguments["robot_goal"], arguments["goal_zone"]
-    if arguments["robot_x"] is None or (goal is None and zone is None):
-        return None
-    columns = {n: _read_only(arguments[n]) for n in ("t", "robot_x", "robot_y")}
-    if any(column.shape != columns["t"].shape for column in columns.values()):
-        return None  # refused later
-    radius = number_of("robot_goal_radius", arguments["robot_goal_radius"], "m")
-    if radius == 0.0 and arguments["robot_radius"] is not None:
-        radius = number_of("robot_radius", arguments["robot_radius"], "m")
-    point = None if goal is None else point_of("robot_goal", goal)
-    return arrival(columns, point, radius, zone)
-
-
-def _robot(arguments: Mapping[str, Any]) -> RobotTrack:
-    _require(arguments, "robot_y", "robot_theta", "robot_radius", "robot_mass")
-    goal_time, goal = arguments["robot_goal_time"], arguments["robot_goal"]
-    rows = {k: _read_only(arguments[f"robot_{k}"]) for k in ("x", "y", "theta")}
-    unknown = np.full(rows["x"].shape, np.nan)
-    rows["w"] = _read_only(unknown if arguments["robot_w"] is None else arguments["robot_w"])
-    v = arguments["robot_v"]
-    if arguments["robot_vx"] is not None or arguments["robot_vy"] is not None:
-        _require(arguments, "robot_vx", "robot_vy")
-        rows |= {k: _read_only(arguments[f"robot_{k}"]) for k in ("vx", "vy")}
-        v = _forward(rows) if v is None else v
-    return RobotTrack(
-        **rows,
-        v=_read_only(unknown if v is None else v),
-        radius=number_of("robot_radius", arguments["robot_radius"], "m"),
-        mass=number_of("robot_mass", arguments["robot_mass"], "kg"),
-        goal_time=None if goal_time is None else number_of("robot_goal_time", goal_time, "s"),
-        goal=None if goal is None else point_of("robot_goal", goal),
-        goal_radius=number_of("robot_goal_radius", arguments["robot_goal_radius"], "m"),
-    )
-
-
-def _speed_limit(value: float | None) -> float | None:
-    """Convert the limit to a number.
-
-    Raises:
-        InputError: it is not positive.
-    """
-    if value is None:
-        return None
-    limit = number_of("robot_speed_limit", value, "m/s")
-    if limit <= 0.0:
-        raise InputError(f"trajectories: robot_speed_limit is {value}, not a positive speed in m/s")
-    return limit
-
-
-def _forward(rows: Mapping[str, Array]) -> Array:
-    """Return the forward speed of a robot given by its world velocity, m/s."""
-    try:
-        return _read_only(rows["vx"] * np.cos(rows["theta"]) + rows["vy"] * np.sin(rows["theta"]))
-    except ValueError as error:
-        raise InputError(f"trajectories: robot_vx, robot_vy, robot_theta: {error}") from error
-
-
-def _agents(arguments: Mapping[str, Any]) -> AgentTracks:
-    _require(arguments, "agent_y", "agent_radius", "agent_mass")
-    x = _read_only(arguments["agent_x"])
-    count = x.shape[1] if x.ndim == 2 else 0
-    absent = np.full(x.shape, np.nan)
-    ids = arguments["agent_id"] if arguments["agent_id"] is not None else np.arange(count)
-    jump = arguments["agent_jump"]
-    return AgentTracks(
-        id=_read_only(ids, np.int64),
-        x=x,
-        y=_read_only(arguments["agent_y"]),
-        vx=_read_only(absent if arguments["agent_vx"] is None else arguments["agent_vx"]),
-        vy=_read_only(absent if arguments["agent_vy"] is None else arguments["agent_vy"]),
-        radius=_read_only(np.broadcast_to(arguments["agent_radius"], (count,))),
-        mass=_read_only(np.broadcast_to(arguments["agent_mass"], (count,))),
-        jump=None if jump is None else _read_only(jump, np.bool_),
-    )
-
-
-def _trips(arguments: Mapping[str, Any]) -> Trips:
-    _require(arguments, "trip_t0", "trip_t1", "trip_reached")
-    return Trips(
-        agent=_read_only(arguments["trip_agent"], np.int64),
-        t0=_read_only(arguments["trip_t0"]),
-        t1=_read_only(arguments["trip_t1"]),
-        reached=_read_only(arguments["trip_reached"], np.bool_),
-    )
-
-
-def _contacts(table: Mapping[str, ArrayLike]) -> ContactEvents:
-    table = mapping_of("contacts", table, "columns to arrays")
-    names = [f.name for f in fields(ContactEvents)]
-    if "bearing" not in table:  # in other tools' tables and older recordings
-        table = {**table, "bearing": np.full(np.shape(table.get("t0", ())), np.nan)}
-    if set(table) != set(names):
-        raise InputError(f"trajectories: contacts needs the columns {', '.join(names)}")
-    return ContactEvents(
-        **{n: _read_only(table[n], np.int64 if n == "agent" else np.float64) for n in names}
-    )
 
 
 def _check(run: Trajectories) -> None:

@@ -25,7 +25,7 @@ from crowdbot.plugins.robots.body_part import (
     balance,
     scaled,
 )
-from crowdbot.plugins.robots.limits_build import limits_of
+from crowdbot.plugins.robots.limits_build import limits_of, two_wheels
 from crowdbot.plugins.robots.qolo import QoloSpec
 
 FRONT, REAR = 0.051, -0.515  # m, ends of the capsule's axis
@@ -68,7 +68,7 @@ def build(spec: QoloSpec) -> RobotModel:
         description=_text(body, spec.radius, WHEEL._replace(effort=WHEEL.effort * share)),
         base="base_link",
         base_height=WHEEL.radius,
-        drive=sdf.drive(TRACK, WHEEL.radius),
+        drive=two_wheels(TRACK, WHEEL.radius),
         limits=limits_of(spec),
         footprint_radius=spec.radius,
         footprint=np.array([[FRONT, 0.0], [REAR, 0.0]]),

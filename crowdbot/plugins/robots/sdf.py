@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from crowdbot.plugin import DifferentialDrive
 from crowdbot.plugins.robots.body_part import BLACK, SILVER, Colour, Part, Vector, balance
 
 
@@ -74,16 +73,6 @@ def wheel(side: str, y: float, z: float, of: Wheel) -> str:
 def wheels(track: float, z: float, of: Wheel) -> str:
     """Return the left and the right wheel, as `wheel` does, ``track`` apart, m."""
     return wheel("left", 0.5 * track, z, of) + wheel("right", -0.5 * track, z, of)
-
-
-def drive(track: float, radius: float) -> DifferentialDrive:
-    """Return the drive of `wheels` with this radius, m."""
-    return DifferentialDrive(
-        left_joint="left_wheel_joint",
-        right_joint="right_wheel_joint",
-        command_radius=radius,
-        track=track,
-    )
 
 
 def inertia(xx: float, yy: float, zz: float) -> str:

@@ -24,7 +24,7 @@ from crowdbot.plugins.robots.body_part import (
     balance,
     scaled,
 )
-from crowdbot.plugins.robots.limits_build import limits_of
+from crowdbot.plugins.robots.limits_build import limits_of, two_wheels
 from crowdbot.plugins.robots.smart_wheelchair import SmartWheelchairSpec
 
 TRACK, HEIGHT = 0.52, 1.35
@@ -86,7 +86,7 @@ def build(spec: SmartWheelchairSpec) -> RobotModel:
         description=_text(body, spec, WHEEL._replace(effort=WHEEL.effort * share)),
         base="base_link",
         base_height=WHEEL.radius,
-        drive=sdf.drive(TRACK, WHEEL.radius),
+        drive=two_wheels(TRACK, WHEEL.radius),
         limits=limits_of(spec),
         footprint_radius=math.hypot(across, along),
         footprint=np.array(corners),

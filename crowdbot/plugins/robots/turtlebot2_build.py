@@ -9,7 +9,7 @@ from __future__ import annotations
 import crowdbot.plugins.robots.sdf as sdf
 from crowdbot.plugin import RobotModel
 from crowdbot.plugins.robots.body_part import balance
-from crowdbot.plugins.robots.limits_build import limits_of
+from crowdbot.plugins.robots.limits_build import limits_of, two_wheels
 from crowdbot.plugins.robots.turtlebot2 import Turtlebot2Spec
 from crowdbot.plugins.robots.turtlebot2_parts import parts
 
@@ -34,7 +34,7 @@ def build(spec: Turtlebot2Spec) -> RobotModel:
         description=_sdf(spec.mass),
         base="base_link",
         base_height=BASE_HEIGHT,
-        drive=sdf.drive(TRACK, WHEEL_RADIUS),
+        drive=two_wheels(TRACK, WHEEL_RADIUS),
         limits=limits_of(spec),
         footprint_radius=BODY_RADIUS,
         height=BODY_HEIGHT,

@@ -23,12 +23,8 @@ from crowdbot.core.trajectories.preprocess import (
     valid_agent_steps,
     valid_robot_steps,
 )
-from crowdbot.core.trajectories.trajectories import (
-    AgentTracks,
-    RobotTrack,
-    Trajectories,
-    cached_beside,
-)
+from crowdbot.core.trajectories.tracks import AgentTracks, RobotTrack
+from crowdbot.core.trajectories.trajectories import Trajectories, cached_beside
 from crowdbot.errors import InputError
 
 NAN = np.nan

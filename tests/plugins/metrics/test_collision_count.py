@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from crowdbot.core.trajectories.encounters import contact_onsets, encounter
-from crowdbot.core.trajectories.trajectories import ContactEvents, Trajectories
+from crowdbot.core.trajectories.tracks import ContactEvents
+from crowdbot.core.trajectories.trajectories import Trajectories
 from tests.plugins.metrics.scenes import (
     REACH,
     Body,

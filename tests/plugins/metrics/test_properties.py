@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 import crowdbot
 from crowdbot.core.trajectories.commands import Commands
-from crowdbot.core.trajectories.trajectories import RobotTrack, Trajectories
+from crowdbot.core.trajectories.tracks import RobotTrack
+from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
 from crowdbot.testing.symmetries import move, with_people
 from crowdbot.testing.worlds import World, random_world, straight_world

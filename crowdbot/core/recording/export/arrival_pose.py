@@ -8,7 +8,8 @@ from collections.abc import Callable
 import numpy as np
 
 from crowdbot.core.geometry.footprint import Footprint
-from crowdbot.core.trajectories.trajectories import RobotTrack, Trajectories
+from crowdbot.core.trajectories.tracks import RobotTrack
+from crowdbot.core.trajectories.trajectories import Trajectories
 
 _HALVINGS = 50
 

@@ -14,7 +14,8 @@ from crowdbot.core.recording.header import RecordingHeader
 from crowdbot.core.recording.ros_topics import ToolTopics
 from crowdbot.core.recording.topics import Topic
 from crowdbot.core.recording.viewers import RobotPath
-from crowdbot.core.trajectories.trajectories import RobotTrack, Trajectories
+from crowdbot.core.trajectories.tracks import RobotTrack
+from crowdbot.core.trajectories.trajectories import Trajectories
 
 #: Topics per sample, recorded less often unless everything is recorded.
 OFTEN = (Topic.TF, Topic.PEOPLE_MARKER)

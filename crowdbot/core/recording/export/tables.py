@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.trajectories.trajectories import AgentTracks, Trajectories
+from crowdbot.core.trajectories.tracks import AgentTracks
+from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 

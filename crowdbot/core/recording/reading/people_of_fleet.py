@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from crowdbot.core.support.immutable import immutable
-from crowdbot.core.trajectories.trajectories import AgentTracks, Trajectories, Trips
+from crowdbot.core.trajectories.tracks import AgentTracks, Trips
+from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError
 
 
