@@ -24,16 +24,20 @@ if TYPE_CHECKING:
 DRAWS = 2
 
 
-def of_people(homography: str | None, frame_rate: float | None, *, robot: bool) -> VideoScale:
+def of_people(
+    homography: str | None, frame_rate: float | None, files: Sequence[Path] | None, *, robot: bool
+) -> VideoScale:
     """Return the scale of recorded people's tables.
 
     Raises:
-        UsageError: there is one for tables with a robot, whose sizes are metres.
+        UsageError: there is one without a file, or for tables with a robot, whose sizes are metres.
         InputError: as of `video_scale`.
     """
     from crowdbot.core.trajectories.data_sets.homography import video_scale
 
     scale = video_scale(homography, frame_rate)
+    if scale and not files:
+        raise UsageError("--homography and --frame-rate are for the files of --reference")
     if scale and robot:
         raise UsageError(
             "--homography and --frame-rate are for tables of people alone; those of --robot have "

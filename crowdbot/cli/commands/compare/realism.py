@@ -81,7 +81,7 @@ def realism(
     from crowdbot.core.realism.page import render
 
     check_ending(out, ".html")
-    scale = of_people(homography, frame_rate, robot=robot)
+    scale = of_people(homography, frame_rate, reference, robot=robot)
     registry = installed(plugin, no_plugins)
     if robot:
         draws = read_seeds(seeds or f"1..{DRAWS}")

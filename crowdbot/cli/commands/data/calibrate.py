@@ -91,7 +91,7 @@ def calibrate(
 
     check_ending(out, ".yaml", ".yml")
     registry = installed(plugin, no_plugins)
-    scale = of_people(homography, frame_rate, robot=robot)
+    scale = of_people(homography, frame_rate, reference, robot=robot)
     plain: dict[str, Any] = {
         "crowd": str(Path(crowd).resolve()) if Path(crowd).is_file() else crowd,
         "overrides": tuple(overrides or ()),

@@ -106,6 +106,8 @@ def test_commands_take_the_scale(
     assert np.abs(rows[:, 2]).max() == pytest.approx(9.0, abs=1e-6)
     assert main(["realism", "human", "--robot", "--reference", "a.csv", *scale]) == 2
     assert "have metres and seconds" in capsys.readouterr().err
+    assert main(["realism", "rvo", "--frame-rate", "25"]) == 2
+    assert "are for the files of --reference" in capsys.readouterr().err
     assert main(["realism", "rvo", "--reference", str(tracks), "--frame-rate", "0"]) == 1
     assert "a frame rate is a number of frames per second, not 0" in capsys.readouterr().err
     other = _file(tmp_path, "<Simulation><World/></Simulation>", "u.xml")
