@@ -12,7 +12,7 @@ from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.support.arguments import expect, number_of, path_of, texts_of
 from crowdbot.dsl.scenario.scenario import Scenario
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.dsl.suite.settings import setting_texts
 from crowdbot.dsl.suite.suite_entry import SuiteEntry
 from crowdbot.errors import InputError, kind_of

@@ -62,8 +62,8 @@ from crowdbot.core.recording.recording import Recording as Recording
 from crowdbot.core.recording.recording import RecordingInfo as RecordingInfo
 from crowdbot.core.robots.description import Description as Description
 from crowdbot.core.robots.description import read_description as read_description
-from crowdbot.core.robots.published import PublishedWheel as PublishedWheel
 from crowdbot.core.robots.published import read_published as read_published
+from crowdbot.core.robots.published_conversion import PublishedWheel as PublishedWheel
 from crowdbot.core.scoring.metric import Metric as Metric
 from crowdbot.core.scoring.metric import References as References
 from crowdbot.core.scoring.score_factory import ScoreFactory as ScoreFactory

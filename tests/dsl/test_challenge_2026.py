@@ -18,7 +18,7 @@ from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.dsl.identity.canonical import content_hash
 from crowdbot.dsl.scenario.robot_response import RobotResponse
 from crowdbot.dsl.scenario.scenario import Crowd
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 
 REGISTRY = discover(allow=())
 #: Where the people start, m, and the way that they walk before they come back to where they were.

@@ -9,7 +9,8 @@ import pytest
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.dsl.identity.canonical import content_hash
-from crowdbot.dsl.suite.expand import Expansion, expand_document, load_document
+from crowdbot.dsl.suite.expand import expand_document, load_document
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.dsl.text.diagnostics import render
 from crowdbot.errors import SpecError, UsageError
 from tests.paths import DATA

@@ -11,7 +11,7 @@ import pytest
 
 from crowdbot.core.registry.registry import Plugin, Registry, assemble, discover
 from crowdbot.core.scenarios.library import open_spec, pick, select, suite_names
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.errors import InputError, SpecError, UnknownNameError
 from tests.paths import DATA
 

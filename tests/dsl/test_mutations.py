@@ -24,7 +24,8 @@ from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import installed
 from crowdbot.dsl.identity.canonical import content_hash
 from crowdbot.dsl.spec.quantities import UNITS
-from crowdbot.dsl.suite.expand import Expansion, expand_document, load_document
+from crowdbot.dsl.suite.expand import expand_document, load_document
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.dsl.text.diagnostics import CODES, Diagnostic, Source, render
 from crowdbot.dsl.text.nodes import parse, to_data
 from crowdbot.dsl.text.plain_yaml import to_yaml

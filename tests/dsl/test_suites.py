@@ -10,7 +10,8 @@ import pytest
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import installed, open_spec
 from crowdbot.dsl.identity.canonical import content_hash
-from crowdbot.dsl.suite.expand import Expansion, expand_document, load_document
+from crowdbot.dsl.suite.expand import expand_document, load_document
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.dsl.text.diagnostics import render
 from crowdbot.errors import SpecError
 from tests.paths import DATA

@@ -14,7 +14,7 @@ from crowdbot.errors import InputError
 if TYPE_CHECKING:
     from crowdbot.core.bundle.standings import Standings
     from crowdbot.core.registry.registry import Registry
-    from crowdbot.dsl.suite.expand import Expansion
+    from crowdbot.dsl.suite.expansion import Expansion
 
 Accept = Annotated[
     list[str] | None, option("NAME", "Compare although bundles differ in this; repeatable.")

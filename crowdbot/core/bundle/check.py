@@ -25,7 +25,7 @@ from crowdbot.core.support.text import plural
 from crowdbot.dsl.identity.canonical import dump_scenario_yaml
 from crowdbot.dsl.identity.crowd_likeness import fingerprint
 from crowdbot.dsl.scenario.scenario import Scenario
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.errors import InputError
 
 __all__ = ["ClaimedRun", "check_members", "check_suite", "claimed_runs", "problems_of"]

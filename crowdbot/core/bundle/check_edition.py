@@ -9,7 +9,7 @@ from pathlib import Path
 from crowdbot.core.bundle.manifest import LOCK, RULES, Manifest
 from crowdbot.core.bundle.verification import content_hash
 from crowdbot.core.support.text import plural
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.dsl.suite.round import Round
 
 _SHOWN = 3

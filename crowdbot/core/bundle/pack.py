@@ -31,7 +31,7 @@ from crowdbot.core.support.source_digest import file_digest
 from crowdbot.core.support.strict_json import parse_json
 from crowdbot.core.types.ending import Ending
 from crowdbot.dsl.scenario.lock import LockFiles
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.dsl.suite.round import Round
 from crowdbot.errors import InputError, UnknownNameError, printable
 

@@ -24,7 +24,7 @@ from crowdbot.core.scenarios.with_crowds import with_crowds
 from crowdbot.core.sim.references import make_reference
 from crowdbot.core.support.json_digest import digest
 from crowdbot.core.types.ending import has_failed
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.errors import CrowdbotError, InputError, PlannerError, PluginError, SimulationError
 
 

@@ -26,7 +26,7 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.runs.run_options import USUAL, RunOptions
 from crowdbot.core.scenarios.library import open_suite
 from crowdbot.dsl.scenario.lock import LockFiles
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.errors import (
     CrowdbotError,
     InputError,

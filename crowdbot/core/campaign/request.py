@@ -15,7 +15,7 @@ from crowdbot.core.scenarios.library import open_spec, select_any
 from crowdbot.core.scenarios.with_crowds import with_crowds
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.spec.component_specs import PlannerRole
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.errors import InputError, UnknownNameError, UsageError
 
 

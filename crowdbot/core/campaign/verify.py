@@ -31,7 +31,7 @@ from crowdbot.core.scoring.scores_csv import read_scores_csv
 from crowdbot.core.sim.simulate import make_run
 from crowdbot.core.types.score import Score
 from crowdbot.dsl.scenario.seeds import stream_seed
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.errors import InputError
 
 #: Keys of a planner in run.json that are not parameters.

@@ -113,3 +113,11 @@ def sdf_joint(joint: Xml.Element) -> Joint:
         damping=_damping(joint.findtext("axis/dynamics/damping"), name),
         velocity=_fastest(joint.findtext("axis/limit/velocity"), name),
     )
+
+
+def hold_still(joint: Xml.Element) -> None:
+    """Make a joint a fixed one."""
+    joint.set("type", "fixed")
+    for tag in ("axis", "limit", "mimic", "dynamics", "safety_controller", "calibration"):
+        for part in joint.findall(tag):
+            joint.remove(part)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -92,3 +93,12 @@ def _shift(collision: Xml.Element, by: tuple[float, float, float]) -> None:
         origin = Xml.SubElement(collision, "origin")
     origin.set("xyz", " ".join(f"{x:.9g}" for x in place[:3].tolist()))
     origin.set("rpy", " ".join(f"{x:.12g}" for x in pose[3:]))
+
+
+def collision_meshes(robot: Xml.Element) -> Iterator[tuple[Xml.Element, Xml.Element, Xml.Element]]:
+    """Yield link, collision and mesh of each collision mesh."""
+    for link in robot.findall("link"):
+        for collision in link.findall("collision"):
+            mesh = collision.find("geometry/mesh")
+            if mesh is not None:
+                yield link, collision, mesh

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.library import open_document
-from crowdbot.dsl.suite.expand import Expansion, expand_document
+from crowdbot.dsl.suite.expand import expand_document
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.errors import InputError
 
 

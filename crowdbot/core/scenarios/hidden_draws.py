@@ -32,7 +32,8 @@ from crowdbot.dsl.suite.commitment import (
     committed_content,
     is_random,
 )
-from crowdbot.dsl.suite.expand import Expansion, expand_document
+from crowdbot.dsl.suite.expand import expand_document
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.dsl.suite.suite import ParsedSuite
 from crowdbot.dsl.text.bounded_files import read_bytes
 from crowdbot.dsl.text.diagnostics import Diagnostic

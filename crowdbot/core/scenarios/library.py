@@ -22,7 +22,8 @@ from crowdbot.core.support.gc_throttle import throttled_gc
 from crowdbot.core.support.text_files import suggest_files
 from crowdbot.dsl.scenario.lock import LockFiles
 from crowdbot.dsl.scenario.scenario import Locked, Scenario
-from crowdbot.dsl.suite.expand import Expanding, Expansion, expand_document, load_document
+from crowdbot.dsl.suite.expand import Expanding, expand_document, load_document
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.dsl.suite.installed import Installed
 from crowdbot.dsl.suite.suite import ParsedSuite
 from crowdbot.dsl.text.diagnostics import Diagnostic

@@ -23,7 +23,7 @@ from crowdbot.dsl.scenario.agent_tables import join_tables, table_hash
 from crowdbot.dsl.scenario.field_hashes import FieldHashes, hash_fields
 from crowdbot.dsl.scenario.lock import LOCK, Lock, LockedScenario, LockedTable, LockFiles
 from crowdbot.dsl.scenario.scenario import Scenario
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.dsl.text.diagnostics import Mark
 from crowdbot.dsl.text.nodes import Node
 from crowdbot.errors import InputError

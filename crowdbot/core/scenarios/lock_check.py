@@ -12,7 +12,7 @@ from crowdbot.dsl.identity.population_inputs import population_inputs
 from crowdbot.dsl.scenario.field_hashes import Values, flatten
 from crowdbot.dsl.scenario.lock import Lock, LockFiles
 from crowdbot.dsl.scenario.scenario import OUTSIDE_HASH, Scenario
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.errors import InputError
 
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.named_crowds import open_crowd
 from crowdbot.dsl.scenario.scenario import Crowd, Scenario
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.errors import InputError
 
 #: Name of the axis for the crowds.

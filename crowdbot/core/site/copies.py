@@ -13,7 +13,7 @@ from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.library import open_document
 from crowdbot.dsl.scenario.lock import LockFiles
 from crowdbot.dsl.suite.asset_files import asset_hashes
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.errors import InputError
 
 SUITE, BUNDLES = "suite", "bundles"

@@ -16,7 +16,7 @@ from crowdbot.core.view.render import render
 from crowdbot.core.view.svg import to_svg
 from crowdbot.dsl.identity.canonical import content_hash
 from crowdbot.dsl.scenario.scenario import Scenario
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.dsl.suite.matrix import DRAW
 
 FOLDER = "scenarios"

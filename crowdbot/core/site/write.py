@@ -24,7 +24,7 @@ from crowdbot.core.support.html_page import Allowed, render_page
 from crowdbot.core.support.text import plural
 from crowdbot.dsl.identity.population_inputs import population_inputs
 from crowdbot.dsl.scenario.lock import LockFiles
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.dsl.suite.round import Round
 
 INDEX, LEADERBOARD = "index.html", "leaderboard.html"

@@ -19,7 +19,7 @@ from crowdbot.core.bundle.manifest import MANIFEST
 from crowdbot.core.recording.container.attachments import attach
 from crowdbot.core.runs.run_record import record_problems
 from crowdbot.core.scenarios.library import open_suite
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.errors import InputError
 from tests.core.bundle.made_up_runs import make_bundle, registry, rewrite, write_recording
 

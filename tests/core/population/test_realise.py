@@ -10,7 +10,7 @@ from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.dsl.scenario.scenario import Scenario
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.errors import InputError
 
 

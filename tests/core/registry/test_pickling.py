@@ -14,7 +14,7 @@ from crowdbot.core.registry.narrowed_models import models_of
 from crowdbot.core.registry.registry import blank_of, registry_of
 from crowdbot.core.registry.registry_source import whereabouts
 from crowdbot.dsl.spec.spec import ComponentSpec
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.errors import InputError, UnknownNameError
 
 IDS = ("in-d0125-slow-c01-r02", "counter-d0250-dispersed-c20-r05")

@@ -32,7 +32,8 @@ from crowdbot.core.sim.plant import RobotPlant
 from crowdbot.core.sim.robot_ending import RobotEnding
 from crowdbot.core.support.ticks import TICK
 from crowdbot.dsl.scenario.scenario import Scenario
-from crowdbot.dsl.suite.expand import Expanding, Expansion
+from crowdbot.dsl.suite.expand import Expanding
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.dsl.suite.suite import ParsedSuite
 from crowdbot.plugin import CameraFrame, Command, Observation, Planner, Reading, RobotState
 

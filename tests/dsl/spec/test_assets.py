@@ -14,7 +14,7 @@ from crowdbot.core.scenarios.library import open_spec
 from crowdbot.dsl.identity.canonical import content_hash, dump_scenario_yaml
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.spec.assets import Asset
-from crowdbot.dsl.suite.expand import Expansion
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.errors import InputError, SpecError
 from crowdbot.plugins.crowd.policies.replay import ReplaySpec
 

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import installed
 from crowdbot.dsl.suite.commitment import commitment_of, committed_content
-from crowdbot.dsl.suite.expand import Expansion, expand_document, load_document
+from crowdbot.dsl.suite.expand import expand_document, load_document
+from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.errors import SpecError
 from tests.paths import DATA
 

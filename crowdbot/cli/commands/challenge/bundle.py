@@ -20,7 +20,7 @@ from crowdbot.errors import UsageError
 if TYPE_CHECKING:
     from crowdbot.core.bundle.manifest import Manifest
     from crowdbot.core.registry.registry import Registry
-    from crowdbot.dsl.suite.expand import Expansion
+    from crowdbot.dsl.suite.expansion import Expansion
 
 
 def bundle(

@@ -15,7 +15,7 @@ from crowdbot.core.support.text import plural
 if TYPE_CHECKING:
     from crowdbot.core.registry.registry import Registry
     from crowdbot.dsl.scenario.lock import LockFiles
-    from crowdbot.dsl.suite.expand import Expansion
+    from crowdbot.dsl.suite.expansion import Expansion
 
 
 def lock(

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from crowdbot.core.bundle.rerun_verdict import RerunVerdict
     from crowdbot.core.planning.choice import PlannerPlace
     from crowdbot.core.registry.registry import Registry
-    from crowdbot.dsl.suite.expand import Expansion
+    from crowdbot.dsl.suite.expansion import Expansion
 
 _SAYS = {
     "verified": "every run that was made again is the same, bit by bit",

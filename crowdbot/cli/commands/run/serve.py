@@ -57,7 +57,7 @@ if TYPE_CHECKING:
     from crowdbot.core.registry.registry import Registry
     from crowdbot.core.runs.run import Request, Run
     from crowdbot.dsl.scenario.scenario import Scenario
-    from crowdbot.dsl.suite.expand import Expansion
+    from crowdbot.dsl.suite.expansion import Expansion
 
 
 def serve(

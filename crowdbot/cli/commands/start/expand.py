@@ -18,7 +18,7 @@ from crowdbot.errors import printable
 if TYPE_CHECKING:
     from crowdbot.core.registry.registry import Registry
     from crowdbot.dsl.scenario.scenario import Scenario
-    from crowdbot.dsl.suite.expand import Expansion
+    from crowdbot.dsl.suite.expansion import Expansion
 
 
 def expand(
