@@ -13,7 +13,8 @@ from pydrake.systems.framework import DiagramBuilder
 from crowdbot.core.robots import mesh_pieces as pieces
 from crowdbot.core.robots.convex_piece import corners_of
 from crowdbot.core.robots.description import Description
-from crowdbot.core.robots.published import PublishedWheel, read_published
+from crowdbot.core.robots.published import read_published
+from crowdbot.core.robots.published_conversion import PublishedWheel
 from crowdbot.core.robots.simplify import simplified
 from crowdbot.core.sim.plant import add_plant
 from crowdbot.core.types.environment import EnvironmentParts
