@@ -28,7 +28,7 @@ from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.scenarios.named_crowds import crowd_parts, open_crowd
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.dsl.identity.crowd_likeness import fingerprint
-from crowdbot.dsl.scenario.scenario import Crowd
+from crowdbot.dsl.scenario.crowd import Crowd
 from crowdbot.errors import UnknownNameError
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -16,8 +16,8 @@ from crowdbot.core.scenarios.named_crowds import open_crowd
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.dsl.identity.canonical import content_hash
+from crowdbot.dsl.scenario.crowd import Crowd
 from crowdbot.dsl.scenario.robot_response import RobotResponse
-from crowdbot.dsl.scenario.scenario import Crowd
 from crowdbot.dsl.suite.expansion import Expansion
 
 REGISTRY = discover(allow=())

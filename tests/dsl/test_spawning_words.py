@@ -18,7 +18,8 @@ from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.dsl.identity.canonical import content_hash, dump_scenario_yaml
-from crowdbot.dsl.scenario.scenario import Crowd, Scenario
+from crowdbot.dsl.scenario.crowd import Crowd
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.scenario.spawning import Agent
 from crowdbot.dsl.suite.agents_csv import read_agents
 from crowdbot.dsl.text.diagnostics import Diagnostic, Source, render

@@ -10,7 +10,7 @@ import numpy as np
 
 from crowdbot.core.types.arrays import Array, Point
 from crowdbot.core.types.environment import EnvironmentParts
-from crowdbot.dsl.scenario.scenario import Crowd
+from crowdbot.dsl.scenario.crowd import Crowd
 from crowdbot.errors import InputError
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.population.optional_columns import OPTIONAL
 from crowdbot.core.types.arrays import Array
-from crowdbot.dsl.scenario.scenario import AtGoal
+from crowdbot.dsl.scenario.crowd import AtGoal
 from crowdbot.errors import InputError
 
 Route = tuple[tuple[float, float], ...]

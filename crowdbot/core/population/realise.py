@@ -27,8 +27,9 @@ from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.population.spawns import SpawnSampler
 from crowdbot.core.population.stream_sampler import StreamSampler
 from crowdbot.core.types.environment import EnvironmentParts
+from crowdbot.dsl.scenario.crowd import Crowd, Flow
 from crowdbot.dsl.scenario.people_kinds import USUAL_BODIES
-from crowdbot.dsl.scenario.scenario import Crowd, Flow, Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.scenario.spawning import Agent
 from crowdbot.dsl.spec.assets import Asset
 from crowdbot.errors import InputError

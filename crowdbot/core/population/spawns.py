@@ -25,7 +25,8 @@ from crowdbot.core.population.ground import Ground
 from crowdbot.core.population.occupancy import Occupancy
 from crowdbot.core.population.placement import ATTEMPTS, Placer
 from crowdbot.core.types.arrays import Array, Point
-from crowdbot.dsl.scenario.scenario import Crowd, Scenario
+from crowdbot.dsl.scenario.crowd import Crowd
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.scenario.spawning import Goals, Spawn
 from crowdbot.dsl.spec.areas import GoalArea
 from crowdbot.dsl.spec.parameters import Sample

@@ -16,7 +16,8 @@ from crowdbot.core.population.draws import Streams, draw_groups, draw_one
 from crowdbot.core.population.occupancy import Occupancy
 from crowdbot.core.population.placement import Placer
 from crowdbot.core.types.arrays import Point
-from crowdbot.dsl.scenario.scenario import Crowd, Scenario
+from crowdbot.dsl.scenario.crowd import Crowd
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.scenario.streams import StreamChoice
 from crowdbot.dsl.spec.areas import Area, Place, places_in
 from crowdbot.dsl.spec.parameters import DurationSample

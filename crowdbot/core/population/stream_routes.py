@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.types.arrays import Point
-from crowdbot.dsl.scenario.scenario import AtGoal
+from crowdbot.dsl.scenario.crowd import AtGoal
 from crowdbot.dsl.scenario.streams import Lanes
 from crowdbot.dsl.spec.areas import Area, GoalArea
 from crowdbot.dsl.spec.outlines import along

@@ -9,7 +9,8 @@ from crowdbot.core.population.occupancy import Occupancy
 from crowdbot.core.population.stream_draw import StreamDraw
 from crowdbot.core.population.stream_starts import Start, starts
 from crowdbot.core.types.arrays import Array
-from crowdbot.dsl.scenario.scenario import Crowd, Scenario
+from crowdbot.dsl.scenario.crowd import Crowd
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.scenario.streams import StreamChoice
 
 

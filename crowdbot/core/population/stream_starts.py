@@ -26,7 +26,7 @@ from crowdbot.core.population.stream_routes import (
     stroll,
 )
 from crowdbot.core.types.arrays import Point
-from crowdbot.dsl.scenario.scenario import AtGoal
+from crowdbot.dsl.scenario.crowd import AtGoal
 from crowdbot.dsl.scenario.streams import (
     DirectionsStream,
     QueueStream,

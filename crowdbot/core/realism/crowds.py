@@ -10,7 +10,8 @@ from typing import Any
 
 from crowdbot.core.support.text import plural
 from crowdbot.dsl.identity.crowd_likeness import fingerprint
-from crowdbot.dsl.scenario.scenario import Crowd, Scenario
+from crowdbot.dsl.scenario.crowd import Crowd
+from crowdbot.dsl.scenario.scenario import Scenario
 
 KNOWN = "known_crowds.json"
 

@@ -14,7 +14,7 @@ from crowdbot.core.crowd.policy import CrowdPolicy, CrowdView
 from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.arrays import Array
-from crowdbot.dsl.scenario.scenario import Crowd
+from crowdbot.dsl.scenario.crowd import Crowd
 from crowdbot.dsl.scenario.steering import SteeringSpec
 
 #: Default preferred speeds, m/s: those of the recorded people.

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.types.arrays import Array
-from crowdbot.dsl.scenario.scenario import Crowd
+from crowdbot.dsl.scenario.crowd import Crowd
 from crowdbot.errors import InputError, UnknownNameError
 
 #: Parameters that are not fitted: limits of bodies, view distances, contact forces.

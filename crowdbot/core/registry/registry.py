@@ -26,7 +26,9 @@ from crowdbot.core.registry.plugin_boundary import Exceptions, PluginCall
 from crowdbot.core.registry.registry_source import RegistrySource, Whereabouts
 from crowdbot.core.support.gc_throttle import throttled_gc
 from crowdbot.dsl.scenario.components import components
-from crowdbot.dsl.scenario.scenario import Crowd, NamedPolicy, Robot, Scenario
+from crowdbot.dsl.scenario.crowd import Crowd, NamedPolicy
+from crowdbot.dsl.scenario.robot import Robot
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.spec.component import Component
 from crowdbot.dsl.spec.component_specs import CATEGORIES, MetricSpec, PlannerSpec
 from crowdbot.dsl.spec.parts import narrowed, parts_category

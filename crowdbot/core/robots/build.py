@@ -9,7 +9,7 @@ from functools import cache
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.robots.check import check_model
 from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive, RobotModel
-from crowdbot.dsl.scenario.scenario import Robot
+from crowdbot.dsl.scenario.robot import Robot
 from crowdbot.dsl.spec.component_specs import RobotSpec
 from crowdbot.errors import InputError
 

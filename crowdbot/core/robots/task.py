@@ -18,7 +18,8 @@ from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import RobotModel, robot_body
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.core.types.task import Task
-from crowdbot.dsl.scenario.scenario import Robot, Scenario
+from crowdbot.dsl.scenario.robot import Robot
+from crowdbot.dsl.scenario.scenario import Scenario
 
 #: Corners of a zone at the robot's start, m.
 _HERE = np.array([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)])

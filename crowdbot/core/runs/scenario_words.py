@@ -6,8 +6,9 @@ import math
 from collections.abc import Callable
 
 from crowdbot.core.runs.run_record import RunRecord
+from crowdbot.dsl.scenario.crowd import Crowd
 from crowdbot.dsl.scenario.robot_response import RobotResponse
-from crowdbot.dsl.scenario.scenario import Crowd, Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.suite.matrix import DRAW
 
 _ORDER = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth")

@@ -10,7 +10,7 @@ from pathlib import Path
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.library import installed, plugin_folders
 from crowdbot.core.support.text_files import input_bytes
-from crowdbot.dsl.scenario.scenario import Crowd
+from crowdbot.dsl.scenario.crowd import Crowd
 from crowdbot.dsl.suite.expand import expand_document, load_document
 from crowdbot.dsl.text.diagnostics import Diagnostic
 from crowdbot.errors import InputError, SpecError, UnknownNameError

@@ -8,7 +8,8 @@ from dataclasses import replace
 
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.named_crowds import open_crowd
-from crowdbot.dsl.scenario.scenario import Crowd, Scenario
+from crowdbot.dsl.scenario.crowd import Crowd
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.errors import InputError
 

@@ -20,7 +20,8 @@ from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.appearance import Appearance
 from crowdbot.core.types.environment import EnvironmentParts
-from crowdbot.dsl.scenario.scenario import Crowd, NamedPolicy, Scenario
+from crowdbot.dsl.scenario.crowd import Crowd, NamedPolicy
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.scenario.seeds import stream_seed
 from crowdbot.dsl.scenario.steering import SteeringSpec
 

@@ -19,7 +19,8 @@ from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.robot import RobotModel
 from crowdbot.core.types.sensor import SensorInfo
 from crowdbot.core.types.task import Task
-from crowdbot.dsl.scenario.scenario import Robot, Scenario
+from crowdbot.dsl.scenario.robot import Robot
+from crowdbot.dsl.scenario.scenario import Scenario
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

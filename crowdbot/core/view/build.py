@@ -17,7 +17,9 @@ from crowdbot.core.robots import build_model
 from crowdbot.core.types.arrays import Point
 from crowdbot.core.view.map_content import MapContent, RobotView, Sector
 from crowdbot.core.view.ways import ways_of
-from crowdbot.dsl.scenario.scenario import Crowd, Robot, Scenario
+from crowdbot.dsl.scenario.crowd import Crowd
+from crowdbot.dsl.scenario.robot import Robot
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.spec.areas import Area
 from crowdbot.dsl.spec.component_specs import SensorSpec
 from crowdbot.dsl.spec.spec import Mount

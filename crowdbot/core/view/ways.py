@@ -11,7 +11,7 @@ import numpy as np
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.types.arrays import Point
 from crowdbot.core.types.environment import EnvironmentParts
-from crowdbot.dsl.scenario.scenario import Crowd
+from crowdbot.dsl.scenario.crowd import Crowd
 
 if TYPE_CHECKING:
     from crowdbot.core.crowd.routing.free_space import FreeSpace

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from crowdbot.dsl.checks.facts import Facts
-from crowdbot.dsl.scenario.scenario import Flow
+from crowdbot.dsl.scenario.crowd import Flow
 from crowdbot.dsl.spec.component_specs import CrowdPolicySpec
 from crowdbot.dsl.text.diagnostics import Diagnostic
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 from crowdbot.dsl.checks.known_places import bounds_of
 from crowdbot.dsl.checks.pydantic_errors import mark_of
-from crowdbot.dsl.scenario.scenario import Crowd, Scenario
+from crowdbot.dsl.scenario.crowd import Crowd
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.spec.areas import Area
 from crowdbot.dsl.spec.spec import Rectangle
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark

@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterator
 
 from crowdbot.dsl.checks.facts import Facts, Path
+from crowdbot.dsl.scenario.crowd import Crowd
 from crowdbot.dsl.scenario.person_goals import ApproachGoal, LeadGoal, PersonGoal
-from crowdbot.dsl.scenario.scenario import Crowd, Robot
+from crowdbot.dsl.scenario.robot import Robot
 from crowdbot.dsl.scenario.spawning import Agent
 from crowdbot.dsl.text.diagnostics import Diagnostic
 

@@ -9,7 +9,7 @@ from crowdbot.dsl.checks.known_places import known_place, standing_in
 from crowdbot.dsl.checks.person_goals import agents_of
 from crowdbot.dsl.checks.reach import areas_connected, first_is_outside, spot
 from crowdbot.dsl.scenario.person_goals import PersonGoal
-from crowdbot.dsl.scenario.scenario import Robot
+from crowdbot.dsl.scenario.robot import Robot
 from crowdbot.dsl.spec.areas import Area
 from crowdbot.dsl.spec.outlines import Point
 from crowdbot.dsl.spec.place import Place

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from crowdbot.core.realism.calibrate import Fit, Generation
     from crowdbot.core.registry.registry import Registry
-    from crowdbot.dsl.scenario.scenario import Crowd
+    from crowdbot.dsl.scenario.crowd import Crowd
 
 _PLACES = ("speed", "body", "policy", "costs", "steering")
 

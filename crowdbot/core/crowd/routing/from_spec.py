@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from crowdbot.core.crowd.routing.parameters import WayFinding
 from crowdbot.dsl.scenario import routing as dsl
-from crowdbot.dsl.scenario.scenario import Crowd
+from crowdbot.dsl.scenario.crowd import Crowd
 from crowdbot.dsl.scenario.seeds import stream_seed
 
 

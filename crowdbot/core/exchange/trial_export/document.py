@@ -18,7 +18,8 @@ from crowdbot.core.exchange.trial_export.people import add_people
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.robots import build_model
 from crowdbot.core.scenarios.lock import population
-from crowdbot.dsl.scenario.scenario import Robot, Scenario
+from crowdbot.dsl.scenario.robot import Robot
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import InputError
 
 _MESHES: Mapping[str, str] = {

@@ -14,7 +14,8 @@ from crowdbot.core.exchange.trial_export.elements import add, limit, number, pla
 from crowdbot.core.exchange.trial_export.policies import Policies
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.registry.registry import Registry
-from crowdbot.dsl.scenario.scenario import Crowd, NamedPolicy, Scenario
+from crowdbot.dsl.scenario.crowd import Crowd, NamedPolicy
+from crowdbot.dsl.scenario.scenario import Scenario
 
 _LOOPS = {"loop": "true", "portal": "true", "return": "true", "onward": "true"}
 _ENDINGS = {

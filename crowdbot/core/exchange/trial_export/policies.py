@@ -14,7 +14,7 @@ from crowdbot.core.exchange.trial.sims import law_alone
 from crowdbot.core.exchange.trial_export.elements import add, number, text_of
 from crowdbot.core.exchange.umans.policies import COSTS
 from crowdbot.core.exchange.umans.presets import PRESETS, preset
-from crowdbot.dsl.scenario.scenario import Crowd, NamedPolicy
+from crowdbot.dsl.scenario.crowd import Crowd, NamedPolicy
 
 #: UMANS' name of each of our cost functions, and its names of their parameters.
 _NAMES: Mapping[str, tuple[str, Mapping[str, str]]] = {

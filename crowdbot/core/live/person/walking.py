@@ -22,7 +22,8 @@ from crowdbot.core.population.occupancy import Occupancy
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.arrays import Point
 from crowdbot.core.types.environment import EnvironmentParts
-from crowdbot.dsl.scenario.scenario import Crowd, NamedPolicy, Scenario
+from crowdbot.dsl.scenario.crowd import Crowd, NamedPolicy
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.scenario.spawning import Agent
 from crowdbot.errors import InputError
 

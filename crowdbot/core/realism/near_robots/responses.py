@@ -10,8 +10,9 @@ from crowdbot.core.realism.near_robots.replay import Response
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scenarios.named_crowds import open_crowd
 from crowdbot.dsl.identity.crowd_likeness import fingerprint
+from crowdbot.dsl.scenario.crowd import Crowd
 from crowdbot.dsl.scenario.robot_response import GivingWay, HumanResponse
-from crowdbot.dsl.scenario.scenario import Crowd, Scenario
+from crowdbot.dsl.scenario.scenario import Scenario
 
 #: The crowd whose people respond, where only a response is named.
 USUAL_CROWD = "calibrated"

@@ -19,7 +19,7 @@ from crowdbot.core.crowd.routing.parameters import WayFinding
 from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.scenarios.named_crowds import crowd_parts, open_crowd
 from crowdbot.core.types.arrays import Array
-from crowdbot.dsl.scenario.scenario import Crowd
+from crowdbot.dsl.scenario.crowd import Crowd
 
 REGISTRY: Registry = discover(allow=())
 NAMES = sorted(crowd_parts(REGISTRY))

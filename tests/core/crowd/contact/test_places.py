@@ -20,7 +20,8 @@ from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.scenarios.named_crowds import crowd_parts, open_crowd
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.types.arrays import Array
-from crowdbot.dsl.scenario.scenario import Crowd, Scenario
+from crowdbot.dsl.scenario.crowd import Crowd
+from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.errors import InputError
 from crowdbot.plugin import EnvironmentParts
 from tests.paths import ROOT
