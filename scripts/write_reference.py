@@ -30,7 +30,7 @@ from crowdbot.dsl.spec.parameters import (
 )
 from crowdbot.dsl.spec.quantities import UNITS, Quantity
 from crowdbot.dsl.spec.spec import ComponentSpec, Mount, Range, Rectangle, TiltableMount
-from crowdbot.dsl.suite.suite import ScenarioDocument, Seeds, SuiteDocument, SuiteHead
+from crowdbot.dsl.suite.documents import ScenarioDocument, Seeds, SuiteDocument, SuiteHead
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "scenario.md"
 FOLDER = PAGE.parent / "components"

@@ -17,7 +17,7 @@ from pydantic import BaseModel
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.schema.parts import Json, Parts, described
 from crowdbot.dsl.spec.spec import ComponentSpec
-from crowdbot.dsl.suite.suite import FORMAT, ScenarioDocument, SuiteDocument
+from crowdbot.dsl.suite.documents import FORMAT, ScenarioDocument, SuiteDocument
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 

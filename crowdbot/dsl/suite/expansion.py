@@ -7,8 +7,8 @@ from functools import cached_property
 
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.suite.axis_words import AxisWords
+from crowdbot.dsl.suite.documents import Recorded
 from crowdbot.dsl.suite.round import Round
-from crowdbot.dsl.suite.suite import Recorded
 from crowdbot.dsl.suite.suite_entry import NO_SUITE, SuiteEntry
 from crowdbot.dsl.text.nodes import Node
 
