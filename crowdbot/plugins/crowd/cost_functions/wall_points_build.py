@@ -13,12 +13,12 @@ from crowdbot.plugin import (
 
 #: Points nearer to each other than this are one, m.
 SAME = 1e-9
-#: Points are sorted into this many cells per metre; equal points lie in one or in neighbours.
-_PER_METRE = 1e6
-#: Points nearer than this to the border of their cell may be equal to one beside it, cells.
-_BORDER = 1.1 * SAME * _PER_METRE
-#: Fractional parts of multiples of these are spread evenly.
-_MIX_X, _MIX_Y = 0.6180339887498949, 0.7548776662466927
+#: Points are sorted into rings by their squared distance, this many per m^2; equal points lie in
+#: one or in neighbours.
+_RINGS = 1e3
+#: The squared distances of equal points differ by less than 2 SAME (1 + d^2): with |dx| and |dy| up
+#: to SAME by at most 2^1.5 d SAME, and 2 d is at most 1 + d^2.
+_BORDER = 2.0 * SAME * _RINGS
 #: With fewer walls all pairs are tried.
 _FEW = 16
 #: Entries of ``work`` before the chosen walls; forces need fewer.
@@ -42,7 +42,7 @@ def chosen(k: int, work: Pointer) -> int:
 def leave_out_repeated(walls: Rows[WallRecord], count: int, work: Pointer) -> int:
     """Remove chosen walls whose nearest point repeats an earlier one; return their number.
 
-    A hash table of cells finds equal points, so that time grows linearly with the number of walls.
+    A hash table of rings finds equal points, so that time grows linearly with the number of walls.
     """
     if count <= _FEW:
         return int(_leave_out_of_few(walls, count, work))
@@ -69,15 +69,13 @@ def clear_table(table: int, count: int, work: Pointer) -> int:
 @array_kernel
 def is_known(walls: Rows[WallRecord], s: int, table: int, size: int, work: Pointer) -> bool:
     """Put wall s in the table; return True if its nearest point is in it, there or beside it."""
-    x, y = walls[s].nx * _PER_METRE, walls[s].ny * _PER_METRE
-    column, row = math.floor(x), math.floor(y)
-    known, k = _walk(walls, s, _place(float(column), float(row), size), table, size, work)
-    right, up = x - column, y - row  # how far it is in its cell, from 0 to 1
-    if min(min(right, up), 1.0 - max(right, up)) < _BORDER:
-        for i in range(3):
-            for j in range(3):
-                beside = _place(float(column + (i - 1)), float(row + (j - 1)), size)
-                known = known or _walk(walls, s, beside, table, size, work)[0]
+    d2 = walls[s].d2
+    ring = math.floor(d2 * _RINGS)
+    known, k = _walk(walls, s, int(ring) & (size - 1), table, size, work)
+    within = d2 * _RINGS - ring  # from 0 to 1
+    if min(within, 1.0 - within) < _BORDER * (1.0 + d2):
+        for other in (int(ring) - 1, int(ring) + 1):
+            known = known or _walk(walls, s, other & (size - 1), table, size, work)[0]
     work[table + k] = s
     return bool(known)
 
@@ -100,13 +98,6 @@ def _leave_out_of_few(walls: Rows[WallRecord], count: int, work: Pointer) -> int
 def _are_one(walls: Rows[WallRecord], s: int, other: int) -> bool:
     dx, dy = walls[s].nx - walls[other].nx, walls[s].ny - walls[other].ny
     return bool(abs(dx) <= SAME and abs(dy) <= SAME)
-
-
-@array_kernel
-def _place(column: float, row: float, size: int) -> int:
-    """Return the first place in the table for a cell."""
-    mixed = column * _MIX_X + row * _MIX_Y
-    return int((mixed - math.floor(mixed)) * size) & (size - 1)
 
 
 @array_kernel

@@ -106,9 +106,9 @@ def test_walls_are_points_that_count_once() -> None:
     rng = np.random.default_rng(2)
     walls = rows_of(300, WALL)
     x, y = rng.choice([-2.0, -1e-6, 0.0, 1e-6, 0.75, 3.0], (2, 300))
-    walls["nx"][:] = x + rng.choice([0.0, 0.4 * SAME, 0.9 * SAME, 3.0 * SAME], 300)
+    walls["nx"][:] = x + rng.choice([0.0, -0.4 * SAME, 0.4 * SAME, 0.9 * SAME, 3.0 * SAME], 300)
     walls["ny"][:] = y + rng.choice([0.0, -0.7 * SAME], 300)
-    walls["d2"][:] = 1.0
+    walls["d2"][:] = walls["nx"] ** 2 + walls["ny"] ** 2
     point = np.stack([walls["nx"], walls["ny"]], axis=1)
     gap = np.abs(point[:, np.newaxis] - point[np.newaxis]).max(axis=2)
     expected = ~np.any(np.tril(gap <= SAME, -1), axis=1)
