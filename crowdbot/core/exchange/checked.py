@@ -1,4 +1,4 @@
-"""Documents that were made from files of others: checked, errors at the place in those files."""
+"""Check and write imported documents; errors name the position in the imported file."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from crowdbot.errors import SpecError
 def check(
     lines: Sequence[WrittenLine], scenes: Sequence[Draft], registry: Registry, default: Mark
 ) -> list[str]:
-    """Check a document as the language does; return the ids of its scenarios.
+    """Validate an imported document like any other; return the ids of its scenarios.
 
     Args:
         lines: the document.
         scenes: those that its lines name.
         registry: the installed components.
-        default: position of errors that no part of the files caused.
+        default: position for errors that have no origin in the files.
 
     Raises:
         SpecError: E402, what the files say is not a valid scenario, or is too large for one file.

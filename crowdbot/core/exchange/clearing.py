@@ -78,7 +78,7 @@ class FreeFloor:
         return [round(found.x, _DIGITS), round(found.y, _DIGITS)]
 
     def within(self, place: Data) -> Data | None:
-        """Return the part of an area within the border; None if it is all of it, or nothing."""
+        """Return the part of an area inside the border; None if that is all of it, or nothing."""
         if self._floor is None:
             return None
         x0, y0, x1, y1 = self._floor.bounds
@@ -129,7 +129,7 @@ def step_out(scene: Draft, report: Report) -> None:
 
 
 def _clip_blocks(scene: Draft, report: Report) -> None:
-    """Cut blocks off where they leave a floor with walls at its border; what is outside is unseen.
+    """Clip blocks at the border of a walled floor, since parts outside cannot be seen.
 
     Blocks that lie outside as a whole are left out.
     """

@@ -1,4 +1,4 @@
-"""JSON and YAML of other programs as items; JSON is read as the YAML that it is."""
+"""Parse JSON and YAML files of other programs into items; JSON is read as YAML."""
 
 from __future__ import annotations
 

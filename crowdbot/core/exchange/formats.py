@@ -23,7 +23,7 @@ class Context:
         registry: the installed components.
         name: name of the document.
         opened: the files that were opened, by their resolved paths.
-        scale: of tables of recorded people.
+        scale: units of tables of recorded people.
     """
 
     report: Report
@@ -53,11 +53,11 @@ class SceneFormat:
 
     Attributes:
         name: short name.
-        title: for people, with its program.
+        title: readable name, with its program.
         fits: True for a file of this format.
         read: returns the scenes of all its files together.
-        tables: its rows, for the documents.
-        loses: what it says that has no place here, in a sentence, for the documents.
+        tables: its conversion tables, for the documentation.
+        loses: one sentence on what crowdbot cannot represent, for the documentation.
     """
 
     name: str

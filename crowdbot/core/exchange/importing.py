@@ -29,7 +29,7 @@ class Imported:
 
     Attributes:
         lines: the document.
-        scenes: those that its lines name.
+        scenes: the scenes that the lines belong to.
         ids: ids of its scenarios.
         report: the outcome of each part.
         formats: titles of the formats that were read.
@@ -51,7 +51,7 @@ def import_files(
         paths: the files, in any order; those that they name are found beside them.
         name: name of the document, without its ending.
         registry: the installed components.
-        scale: of tables of recorded people.
+        scale: units of tables of recorded people.
 
     Raises:
         InputError: a scale is given, and no file is such a table.

@@ -156,7 +156,7 @@ def _top(lines: Sequence[str]) -> int:
 
 
 def _separator(line: str) -> str | None:
-    """Return what is between the cells of a line; None for any number of blanks."""
+    """Return the separator between the cells of a line; None if they are separated by blanks."""
     return next((mark for mark in "\t;," if mark in line), None)
 
 
@@ -174,7 +174,7 @@ def _columns(head: Sequence[str]) -> dict[str, int]:
 
 
 def _record(file: OpenedScene, report: Report, head: Sequence[str], bare: bool, top: int) -> Item:
-    """Record the columns of a file; return the item that stands for the file."""
+    """Record the columns of a file; return an item that represents the file."""
     table = WRITTEN if bare else RECORDING
     whole = Item(table.element, Mark(file.source))
     report.carried(whole, table.rows[0].ours)
@@ -192,7 +192,7 @@ def _record(file: OpenedScene, report: Report, head: Sequence[str], bare: bool, 
 
 
 class _Row:
-    """One line, whose cells know their place."""
+    """One line of a table; errors in its cells name their position."""
 
     def __init__(
         self, file: OpenedScene, line: int, cells: Sequence[str], columns: dict[str, int],

@@ -151,7 +151,7 @@ def _same(part: Item, value: str) -> bool:
 
 
 def _below(path: str, whole: str) -> str:
-    """Return a path from the part that it is in."""
+    """Return a path relative to the part that contains it."""
     return path.removeprefix(whole).lstrip("/@") or path
 
 

@@ -49,7 +49,7 @@ def _lost(scene: Draft, radius: float, spawn: Data, areas: Data) -> bool:
 
 
 def _parts(floor: FreeFloor, radius: float, area: Data, goals: list[Data]) -> tuple[Any, Any]:
-    """Return the parts of the floor that an area has room in: those with a way, and the others."""
+    """Return the parts of the floor in an area: those with a path to the goals, and the others."""
     free, start = floor.of(radius), shape_of(area)
     good: list[Any] = []
     bad: list[Any] = []

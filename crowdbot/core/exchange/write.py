@@ -1,4 +1,4 @@
-"""Scenes as YAML: each line knows its place in the document, each list entry is one line."""
+"""Write scenes as YAML: one line per list entry; each line has its path in the document."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _RESERVED = {"true", "false", "null"}
 
 @dataclass(frozen=True, slots=True)
 class WrittenLine:
-    """One line of a document, the scene it belongs to and its place in that."""
+    """One line of a document, its scene, and its path in that scene."""
 
     text: str
     scene: int = -1

@@ -50,7 +50,7 @@ def parse_xml(text: str, source: Source) -> tuple[list[Item], list[tuple[Mark, s
 
 
 class _Reader:
-    """One root element: the target of a defused parser, which asks it for positions."""
+    """Parser target that builds one root element, with the positions of its parts."""
 
     def __init__(self, source: Source, line: int) -> None:
         from defusedxml.ElementTree import DefusedXMLParser

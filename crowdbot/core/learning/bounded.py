@@ -1,4 +1,4 @@
-"""Vectors within bounds, in one pass; compiled."""
+"""Clip vectors to bounds and check that they are finite, in one compiled pass."""
 
 from __future__ import annotations
 

@@ -29,8 +29,8 @@ class Conventions:
 
     Attributes:
         observation: its spec.
-        size: how many numbers an observation has.
-        action: what the numbers of an action are: v, w, vy; from -1 to 1, of the limits.
+        size: number of values in an observation.
+        action: meaning of an action's numbers: v, w, vy, as fractions of the limits, -1 to 1.
         step: time between two actions, s.
     """
 

@@ -19,7 +19,7 @@ class LearningContext:
     """Constant data of the observing robots, which are all of one model.
 
     Attributes:
-        worlds: how many there are, W.
+        worlds: number of worlds, W.
         limits, body: of the robot.
         sensors: its sensors that are read, by name.
         step: time between two commands, s.
@@ -38,8 +38,8 @@ class RobotInputs:
 
     Attributes:
         fresh: (W,) True where an episode begins.
-        stepped: (W,) True where a step was made since the last look; elsewhere an observer that
-            remembers returns the same again, unless an episode begins.
+        stepped: (W,) True where a step was made since the last observation; elsewhere an observer
+            with memory repeats its last result, unless an episode begins.
         pose: (W, 3) x, y, yaw by odometry, m and rad.
         twist: (W, 3) v, w, vy by odometry, m/s and rad/s.
         goal: (W, 2) in the frame of ``pose``, m.

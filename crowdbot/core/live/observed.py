@@ -149,7 +149,7 @@ class Observed:
                 yield LiveMessage(image.topic, image.msgtype, ns, b"".join(image.pieces))
 
     def _odometer(self, ns: int, obs: Observation) -> bytes:
-        """Return odometry for a robot without it, which knows only its start."""
+        """Return odometry of a robot without an odometer, from its assumed pose and twist."""
         x, y, yaw = obs.pose
         speed, turn = template.two(obs.twist[0], obs.vy), template.one(obs.twist[1])
         pose_known, twist_known = template.NO_COVARIANCE

@@ -129,7 +129,7 @@ class LiveSteps:
         self.shown = time.monotonic()
 
     def _keep_pace(self, t: float) -> None:
-        """Wait for a clock."""
+        """Wait until the external clock, or real time, has reached ``t``, s."""
         session, policy = self.session, self.policy
         if policy.external_clock:
             session.wait_for_clock(t)

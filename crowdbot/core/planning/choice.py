@@ -31,7 +31,7 @@ class PlannerPlace:
         in_process: True: in the simulator's process; False: in a separate process; None: built-in
             planners inside, all others separate.
         memory: largest address space of a separate process, bytes; None: unlimited.
-        contained: True to refuse planners that this system does not contain.
+        contained: True to refuse planners that this system cannot contain.
         lenient: True to accept a planner that cannot be loaded in its process; it fails in every
             run, and a campaign continues with the others.
         kept: folder of files that planners read, each named by its SHA-256; None: none.

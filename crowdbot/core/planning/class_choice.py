@@ -30,7 +30,7 @@ from crowdbot.errors import InputError
 def class_choice(
     path: Path, name: str, parameters: Mapping[str, Any], place: PlannerPlace
 ) -> PlannerChoice:
-    """Return the planner of a class; it runs in a process of its own unless the place says not.
+    """Return the planner of a class; by default it runs in a separate process.
 
     Raises:
         InputError: there is no such file or class, or a parameter is wrong.

@@ -175,9 +175,9 @@ def _state(given: object) -> str:
 
 
 def _written(built: Any) -> tuple[str, str]:
-    """Return where a class or function is defined, and its source's digest.
+    """Return where a class or function is defined, and the digest of its source.
 
-    In a notebook its text.
+    Outside a file, such as in a notebook: its name, and the digest of its text.
     """
     name = f"{getattr(built, '__module__', '')}.{getattr(built, '__qualname__', '')}"
     try:

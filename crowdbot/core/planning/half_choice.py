@@ -18,7 +18,7 @@ from crowdbot.dsl.spec.component_specs import PlannerSpec
 
 @dataclass(frozen=True, slots=True)
 class BuildWithHalf:
-    """Builds a planner in the simulator's process, and the one it calls in its own place."""
+    """Builds a planner in the simulator's process, and the called one in a separate process."""
 
     spec: PlannerSpec
     registry: Registry

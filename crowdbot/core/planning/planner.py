@@ -110,8 +110,8 @@ def named_drawing(name: str, rows: ArrayLike, text: str | Sequence[str] | None =
     """Return a valid drawing for the recording.
 
     Raises:
-        TypeError, ValueError: it is not a named table of finite numbers, what stands for a text is
-            something else, or it is too large.
+        TypeError, ValueError: it is not a named table of finite numbers, a text has another type,
+            or it is too large.
     """
     table = _table(name, rows)
     if text is None:

@@ -233,7 +233,7 @@ def _process_of_kind(
 def _half(
     spec: PlannerSpec, registry: Registry, origin: _Origin, place: PlannerPlace
 ) -> PlannerChoice:
-    """Return the planner in a planner's spec, which is a document, a kind, or a file."""
+    """Return the planner that another planner's spec names by document, kind, or file."""
     half = getattr(spec, spec.half)
     where = f"{origin.where}{spec.half}: "
     if isinstance(half, Mapping):

@@ -41,5 +41,5 @@ class UnchangedFiles:
 def while_unchanged(
     build: Callable[[], Planner], digest: Callable[[], str], sha256: str, origin: str
 ) -> Callable[[], Planner]:
-    """Return a builder that first checks the planner's files; a failing one stays as it is."""
+    """Return a builder that first checks the planner's files; a `NotLoaded` stays unchanged."""
     return build if isinstance(build, NotLoaded) else UnchangedFiles(build, digest, sha256, origin)

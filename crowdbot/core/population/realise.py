@@ -193,9 +193,9 @@ def _flow_bodies(crowd: Crowd, people: int, streams: Streams) -> Bodies:
 
 
 def _ways(flow: Flow, scenario: Scenario) -> list[Row]:
-    """Return portals and heading of people who alternate in a flow, independent of places.
+    """Return portals and headings that the people of a flow take in turn.
 
-    So equal seeds place people at the same positions for all directions of a flow.
+    They do not depend on places, so equal seeds give equal positions for all directions of a flow.
     """
     there, back = flow.portals, flow.portals[::-1]
     taken = {"in": [there], "counter": [back], "both": [there, back]}[flow.direction]

@@ -106,7 +106,7 @@ def _features(
 
 @kernel
 def _present(position: Array, here: Indices) -> int:
-    """Write who is there, of (N, 2) positions of which some are NaN; return how many."""
+    """Write the indices of present people, whose (N, 2) positions are not NaN; return how many."""
     count = 0
     for i in range(position.shape[0]):
         if not math.isnan(position[i, 0]):
@@ -117,7 +117,7 @@ def _present(position: Array, here: Indices) -> int:
 
 @kernel
 def _inside(position: Array, here: Indices, present: int, window: Array, inside: Indices) -> int:
-    """Write who of ``here`` is in a window along x, begin and end in m; return how many."""
+    """Write which of ``here`` are in a window along x, begin and end in m; return how many."""
     count = 0
     for a in range(present):
         if window[0] <= position[here[a], 0] < window[1]:

@@ -38,8 +38,8 @@ class RealismReference:
         whole: statistics of all recordings.
         floors: name -> statistics of people without avoidance.
         sources: sources of the recordings.
-        folds: pairs of what crowds are compared with, and the other recordings, which are compared
-            with it in the same way: each recording and the rest, or each half and the other.
+        folds: pairs of a reference for crowds, and the other recordings, whose score against it is
+            the ceiling: each recording and the rest, or each half and the other.
     """
 
     halves: tuple[Statistics, Statistics]

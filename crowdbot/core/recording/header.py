@@ -265,7 +265,7 @@ def _camera_message(sensor: str, camera: Pinhole) -> Any:
 
 
 def _sensors(message: Any) -> dict[str, SensorInfo]:
-    """By name."""
+    """Return the descriptions of the sensors, by name."""
     sensors = {s.name: _sensor(s) for s in message.sensors}
     for found in message.cameras:
         camera = Pinhole(

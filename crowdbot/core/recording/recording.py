@@ -70,8 +70,8 @@ class Recording:
         observe: is given each record that is not part of the run's own state, such as images.
 
     Raises:
-        InputError: by each question: not an MCAP file, not a recording of crowdbot, damaged, or
-            it unpacks to more than a recording may.
+        InputError: from any method: not an MCAP file, not a recording of crowdbot, damaged, or too
+            large when decompressed.
     """
 
     def __init__(
@@ -95,7 +95,7 @@ class Recording:
         self._robots: dict[str | None, RobotRecording] = {}
 
     def __reduce__(self) -> tuple[Callable[[Path], Recording], tuple[Path]]:
-        """Return how another process makes it: it opens and reads the file itself."""
+        """Return pickling data, with which another process opens and reads the file itself."""
         return partial(Recording, max_rate=self._max_rate, observe=self._observe), (self.path,)
 
     def __enter__(self) -> Self:
@@ -312,7 +312,7 @@ class Recording:
         )
 
     def _chosen(self, name: str | None) -> tuple[RobotRecords, Trajectories | None]:
-        """Records of one robot, and the people where they are recorded apart."""
+        """Return the records of one robot, and those of people that are recorded separately."""
         robots = {
             prefix.removeprefix("/"): part
             for prefix, part in self._by_prefix.items()

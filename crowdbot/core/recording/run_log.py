@@ -44,9 +44,9 @@ class RunLog:
             people: True to record people and their trips, False to record only contacts with them:
                 people near a fleet are recorded once for all robots.
             robot: its number among those of the crowd's state; None records no contacts.
-            goal_column: column of the crowd's state where the point begins to which people walk.
-            on_sample: is given each sample, too: time, the robot's row, people.
-            on_drawing: is given what the planner draws, too, and the time.
+            goal_column: first of the two columns of the crowd's state with people's waypoints.
+            on_sample: callback for each sample: time (s), the robot's row, people.
+            on_drawing: callback for each drawing of the planner: time (s), drawing.
         """
         self._on_sample, self._on_drawing = on_sample, on_drawing
         self.writer = writer

@@ -72,7 +72,7 @@ def _check_component(plugin: Plugin, category: str, component: Component[Any]) -
 
 
 def _literal_kind(component: Component[Any]) -> str:
-    """Return the kind of a component whose spec says it the way it must be said."""
+    """Return a component's kind, which its spec must declare as a single literal."""
     spec = component.spec
     if not (inspect.isclass(spec) and issubclass(spec, ComponentSpec)):
         raise PluginError(
@@ -90,7 +90,7 @@ def _literal_kind(component: Component[Any]) -> str:
 
 
 def _check_parts(component: Component[Any]) -> None:
-    """Refuse parts of a category that is not after the component's: nothing contains itself."""
+    """Refuse parts of a category that does not come after the component's, to exclude cycles."""
     order = [c.category for c in CATEGORIES]
     try:
         parts = parts_category(component.spec)

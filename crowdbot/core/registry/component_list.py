@@ -20,10 +20,10 @@ class ComponentList(Sequence[Component[Any]]):
     Commands that only read scenarios never load planners and metrics, the largest categories.
 
     Attributes:
-        errors: category -> why it has no components, of those that were asked for.
+        errors: category -> why its components could not be loaded when they were requested.
 
     Args:
-        later: category -> what finds its components, once.
+        later: category -> function that finds its components, called once.
     """
 
     def __init__(self, later: Mapping[str, Callable[[], Components]]) -> None:

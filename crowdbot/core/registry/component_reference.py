@@ -21,7 +21,7 @@ def referenced(reference: str, category: str) -> tuple[Component[Any], ...]:
     Args:
         reference: ``"package.module:NAME"`` for one; ``"package.folder.*"`` for all whose specs
             are defined in a module below a package, in the order of modules and definitions.
-        category: of what a ``*`` stands for.
+        category: category of the components that ``*`` selects.
 
     Raises:
         PluginError: the reference has another form, or names no component.
@@ -50,7 +50,7 @@ def _component(module: ModuleType, name: str, reference: str) -> Component[Any]:
 
 
 def _modules(package: ModuleType) -> Iterator[ModuleType]:
-    """Yield a package, its modules and those of its subpackages, but none that builds."""
+    """Yield a package and all modules below it, except those with build functions."""
     yield package
     for info in sorted(
         pkgutil.iter_modules(getattr(package, "__path__", ())), key=lambda i: i.name

@@ -48,7 +48,7 @@ def _packed(camera: ReplayImages, every: int) -> tuple[dict[str, Any], str]:
 
 
 def _depths(millimetres: NDArray[Any]) -> tuple[NDArray[np.uint8], list[int], float | None]:
-    """Return steps of the largest distance (m); 0 if nothing was measured."""
+    """Return depths as fractions of the largest one (m) in whole steps; 0 if not measured."""
     far = max(int(millimetres.max()), 1)
     steps = np.ceil(millimetres * (_COLOURS / far)).astype(np.uint8)
     return steps, [], far / 1000.0

@@ -42,7 +42,7 @@ def _together(cones: Sequence[ReplayScan]) -> Iterable[Sequence[ReplayScan]]:
 
 
 def _cones(cones: Sequence[ReplayScan]) -> tuple[dict[str, Any], str]:
-    """Return a row per sensor."""
+    """Return the data of cones with equal times, and their packed ranges, a row per sensor."""
     chosen = _thinned(cones[0].t)
     ranges = np.stack([cone.ranges[chosen, 0] for cone in cones])
     about = {
@@ -61,7 +61,7 @@ def _cones(cones: Sequence[ReplayScan]) -> tuple[dict[str, Any], str]:
 
 
 def _scan(scan: ReplayScan) -> tuple[dict[str, Any], str]:
-    """Return some beams of some scans, a row per scan."""
+    """Return a lidar's data, and its packed ranges, with fewer beams and scans."""
     every = max(1, -(-len(scan.angles) // SCAN_BEAMS))
     chosen = _thinned(scan.t)
     ranges = scan.ranges[chosen, ::every]

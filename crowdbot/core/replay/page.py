@@ -88,7 +88,7 @@ def _facts(shown: ShownRun) -> dict[str, str]:
 
 
 def _order(shown: Sequence[ShownRun]) -> Any:
-    """Return facts in the order of the first run that has them."""
+    """Return a sort key that puts facts in the order of the first run that has them."""
     names: dict[str, int] = {}
     for one in shown:
         for name in _facts(one):

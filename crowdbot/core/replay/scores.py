@@ -77,7 +77,7 @@ def _row(score: Score, cells: list[Cell], *, headline: bool) -> ScoreLine:
 
 
 def _name(score: Score) -> str:
-    """Return the metric in words; of the four scores what they are called everywhere, first."""
+    """Return the metric in words; for the four main scores, their role comes first."""
     name, metric = name_of(score.metric, score.variant), _words(score.metric)
     return metric if name in (score.metric, metric) else f"{name} ({metric})"
 

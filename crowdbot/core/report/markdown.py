@@ -63,7 +63,7 @@ def _pareto(contents: Contents) -> tuple[Sequence[str], list[Sequence[str]]]:
 
 
 def _rungs(ladder: Ladder) -> tuple[Sequence[str], list[Sequence[str]]]:
-    """Return the rungs of a planner, with the gain over the one below."""
+    """Return a table of a ladder's rungs, with each one's gain over the rung below."""
     rows: list[Sequence[str]] = [
         (
             _plain(rung.name),

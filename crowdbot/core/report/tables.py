@@ -80,7 +80,7 @@ class _Lines:
             start = stop
 
     def _rest(self, rows: NDArray[np.intp], stops: NDArray[np.intp]) -> list[bytes]:
-        """Return the texts behind the values of some scores, up to the next value or run.
+        """Return the CSV text after each of some values, up to the next value or run.
 
         Args:
             rows: (n,) places of the scores.
@@ -100,13 +100,13 @@ class _Lines:
         return rest
 
     def _make_behind(self, pair: int) -> bytes:
-        """Return the text between a value and its bounds, by label and state."""
+        """Return the CSV text between a value and its bounds, for a pair of label and state."""
         label, state = divmod(pair, len(self._scores.states))
         cells = (*self._scores.labels[label][4:], *self._scores.states[state])
         return b",%b," % csv_cells(cells).encode()
 
     def _make_between(self, number: int) -> bytes:
-        """Return the text between a value without bounds and the next one, by pair and label."""
+        """Return the CSV text between a value without bounds and the next value."""
         pair, following = divmod(number, len(self._firsts))
         return b"%b,%b%b" % (self._behind[pair], _END, self._firsts[following])
 

@@ -129,7 +129,7 @@ def check_comparable(findings: Sequence[Finding]) -> None:
 
 
 def _lines(findings: Sequence[Finding]) -> Iterator[str]:
-    """Yield some findings of each kind."""
+    """Yield lines of text with the first findings of each kind, and the number of others."""
     for kind in dict.fromkeys(f.kind for f in findings):
         same = [f for f in findings if f.kind == kind]
         yield from (f"  {f}" for f in same[:_SHOWN])
@@ -156,7 +156,7 @@ def _all(runs: Sequence[RunRow]) -> Iterator[Finding]:
 
 
 def _excused(planner: str, runs: Sequence[RunRow]) -> Iterator[Finding]:
-    """Yield that draws were replaced, and if these are more than may be."""
+    """Yield a finding if draws were replaced, and another if too many were."""
     replaced = [r for r in runs if r.replaced_draws]
     if not replaced:
         return
@@ -202,7 +202,7 @@ def _head(name: str) -> str:
 
 
 def _unpaired(runs: Sequence[RunRow]) -> Iterator[Finding]:
-    """Yield one finding per set of planners that share runs without the others."""
+    """Yield one finding if not all planners ran the same scenarios and seeds."""
     planners = tuple(sorted({r.planner for r in runs}))
     by_place: dict[tuple[str, int], list[RunRow]] = {}
     for run in runs:

@@ -63,7 +63,7 @@ class IndexedRun(RunRow):
 
 
 class _FromRecord:
-    """A property of `RunRow` that a run's own attribute of the same name goes before.
+    """A property of `RunRow` that an instance attribute of the same name overrides.
 
     Columns of the index are plain attributes of a run: pages read millions of them.
     """

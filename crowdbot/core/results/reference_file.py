@@ -145,7 +145,7 @@ _COLUMNS = ("category", "metric", "symbol", "variant", "unit", "better")
 
 
 class _Table:
-    """Different items, numbered."""
+    """Distinct items, numbered in the order of first use."""
 
     def __init__(self) -> None:
         self.items: list[Any] = []

@@ -50,7 +50,7 @@ class ScoreColumns(Sequence[ScoreRow]):
     """Scores of many runs, one array per column.
 
     Attributes:
-        run_ids, labels, states: what the rows refer to.
+        run_ids, labels, states: distinct values that the rows refer to.
         run, label, state: (n,) places in them.
         value, lower, upper: (n,); NaN where there is none.
     """

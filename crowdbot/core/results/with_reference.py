@@ -36,7 +36,7 @@ def reference_results(text: str) -> Results:
         text: ``crowdbot`` for those that come with it, a file of them, or a folder of runs.
 
     Raises:
-        InputError: there is nothing like that.
+        InputError: it is none of these, or cannot be read.
     """
     found = open_references(text)
     return Results.open(Path(text)) if found is None else found.results

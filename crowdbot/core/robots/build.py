@@ -23,7 +23,7 @@ MODES: Mapping[type, tuple[str, ...]] = {
 
 @cache
 def _tell(kind: str, note: str) -> None:
-    """Issue a note once."""
+    """Log a note about a kind of robot as a warning."""
     _LOG.warning("%s: %s", kind, note)
 
 

@@ -168,7 +168,7 @@ def decompose(points: Array, triangles: Array) -> tuple[Array, ...]:
 
 
 def _kept(file: Path, factors: list[float]) -> Path:
-    """Return the file of the cache for a mesh."""
+    """Return the path of a mesh's file in the cache."""
     try:
         made_by = version("coacd")
     except PackageNotFoundError:
@@ -180,7 +180,7 @@ def _kept(file: Path, factors: list[float]) -> Path:
 
 
 def _keep(kept: Path, pieces: tuple[Array, ...]) -> None:
-    """Write a file of the cache; a folder that cannot be written costs only time."""
+    """Write a mesh's pieces to the cache; do nothing if that is not possible."""
     with suppress(OSError):
         kept.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(

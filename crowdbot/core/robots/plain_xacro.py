@@ -62,7 +62,7 @@ def _tag(element: Xml.Element) -> str:
 
 
 def _filled(text: str, values: Mapping[tuple[str, str], str]) -> str:
-    """Return a text with values by kind and name: an argument may be called as a property is."""
+    """Return a text with its variables replaced by ``values``, (kind, name) -> text."""
 
     def value(use: re.Match[str]) -> str:
         return values.get(("property", use[1]) if use[1] else ("arg", use[2]), use[0])

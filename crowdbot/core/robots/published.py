@@ -40,8 +40,8 @@ def read_published(
 ) -> Description:
     """Convert a file that was not written for simulated contacts to a robot's description.
 
-    The base's frame moves onto the axle of the driven wheels. Of more than two driven wheels, the
-    first of each side stands for all of its side, in their middle.
+    The base's frame moves onto the axle of the driven wheels. With more than two driven wheels, the
+    first of each side replaces all of its side, at their centre.
 
     Args:
         source: as in `read_description`.

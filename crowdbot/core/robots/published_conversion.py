@@ -110,14 +110,14 @@ class Conversion:
                   "{} links that do not hang together with the base are left out")  # fmt: skip
 
     def centre_wheels(self) -> None:
-        """Put the frames of driven wheels where the wheels stand, which is what the track is."""
+        """Move the frames of driven wheels to the wheels' centres, which define the track."""
         for name, wheel in self.wheels.items():
             if wheel.effort is not None:
                 note = drives.centre_wheel(self.robot, self.base, self.joints[name])
                 self.notes += [note] if note else []
 
     def compare_plugins(self, model: Xml.Element) -> None:
-        """Tell what Gazebo's plugins say otherwise of the two driven wheels."""
+        """Note where Gazebo's plugins give other values for the two driven wheels."""
         driven = [n for n, wheel in self.wheels.items() if wheel.effort is not None]
         if len(driven) == 2:
             at = drives.places_of(self.robot, self.base, driven)
@@ -126,7 +126,7 @@ class Conversion:
             self.notes += drives.other_in_plugins(model, track, radius)
 
     def drive_with_two(self) -> None:
-        """Let one wheel of each side stand for all driven ones, and bring the base above them."""
+        """Replace the driven wheels of each side by one, and move the base onto their axle."""
         driven = [name for name, wheel in self.wheels.items() if wheel.effort is not None]
         if not driven:
             return

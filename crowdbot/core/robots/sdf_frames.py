@@ -51,7 +51,7 @@ def written_out(model: Xml.Element, version: str) -> tuple[Xml.Element, list[str
 
 
 def _is_elsewhere(model: Xml.Element, version: str) -> list[bool]:
-    """Return True for each element whose frame is not the one that is read without this."""
+    """Return True for each element that needs conversion, since its frame is not the default."""
     found = [bool(model.findall("frame"))]
     for joint in model.findall("joint"):
         found += [any(pose_of(joint)), _reference(joint) != ""]
@@ -107,7 +107,7 @@ class _Frames:
         return self.pose(reference, (*below, name)) @ matrix(pose_of(element))
 
     def _usual(self, element: Xml.Element) -> str:
-        """Return the frame of an element's pose that names none."""
+        """Return the default frame of an element's pose."""
         if element.tag == "joint":
             return (element.findtext("child") or "").strip()
         return element.get("attached_to", "") if element.tag == "frame" else ""

@@ -63,7 +63,7 @@ def to_urdf(robot: RobotModel, sensors: Mapping[str, SensorInfo], name: str) -> 
 
 
 def _show(link: Xml.Element) -> None:
-    """Let a viewer see what a link collides as; a convex piece as the box around it."""
+    """Add a link's collision shapes as visual shapes; a convex piece as its bounding box."""
     for collision in link.findall("collision"):
         seen = deepcopy(collision)
         seen.tag = "visual"

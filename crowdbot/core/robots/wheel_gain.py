@@ -33,7 +33,7 @@ def reached_speed(model: RobotModel, drive: DifferentialDrive, described: Descri
 
 
 def _geared(described: Description, joint: str, radius: float) -> float:
-    """Return the square of a wheel's turns for one of a driven wheel; 1 if it has no radius."""
+    """Return the squared ratio of a wheel's speed to that of a driven wheel; 1 without radius."""
     try:
         return (radius / described.wheel_radius(joint)) ** 2
     except PluginError:

@@ -95,7 +95,7 @@ def attach_files(folder: Path, record: Mapping[str, Any]) -> bytes:
         record: the record as written later, without sizes and digests of files.
 
     Returns:
-        What now comes after the recorded data.
+        The bytes that now follow the recorded data.
     """
     from crowdbot.core.recording.container.attachments import (
         attach,  # numpy, which listing does not need
@@ -159,7 +159,7 @@ def damage(
 
 
 def changed(directory: Path, record: Mapping[str, Any], names: Sequence[str]) -> str:
-    """Describe a file that differs from the one of which the record has a digest; empty if none.
+    """Describe the first file whose digest is not that of the record; empty if all agree.
 
     Args:
         directory: of a run, or of a calibration run.

@@ -157,7 +157,7 @@ class _Origins:
 
 @dataclass(frozen=True)
 class _OpenedAgain:
-    """The same in another process."""
+    """The scenarios of `_Origins` in another process, which opens the suite again."""
 
     spec: str
     where: Whereabouts

@@ -139,7 +139,7 @@ def _is_hidden(low: float, high: float, first: int, last: int, rays: Array) -> b
 
 @kernel
 def _hide_behind(low: float, high: float, first: int, last: int, rays: Array) -> None:
-    """Let a plate hide what is behind it, where it is nearer than what hid that, or larger."""
+    """Record that a plate hides what is behind it, where it is nearer than the hider so far."""
     near, hider = rays[NEAR, first:last], rays[HIDER, first:last]
     lows, highs = rays[HIDER_LOW, first:last], rays[HIDER_HIGH, first:last]
     for c in range(near.shape[0]):

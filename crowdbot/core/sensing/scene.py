@@ -52,7 +52,7 @@ class Scene:
             robots.
         looks: appearance of people; None: all default.
         others: the other robots of a fleet.
-        things: (T, 6) what they have with them, see `crowdbot.core.sensing.appearance_model`.
+        things: (T, 6) people's objects, see `crowdbot.core.sensing.appearance_model`.
         robot: the robot's state, None before the first update or in a scene without one.
         push: force of people on the robot x, y (N, world frame), and its torque about the robot's
             base (N m), in the last tick.

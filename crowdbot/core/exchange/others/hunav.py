@@ -79,7 +79,7 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     """Return one scene for each file.
 
     Raises:
-        SpecError: E402, an agent is missing or a value cannot be.
+        SpecError: E402, an agent is missing or a value is invalid.
     """
     return [_scene(file, context.report) for file in files]
 
@@ -162,7 +162,7 @@ def _behave(item: Item, row: Data, report: Report) -> None:
 
 
 def _ignoring(scene: Draft) -> None:
-    """Let those with attention 0 ignore robots."""
+    """Make people with attention 0 ignore robots."""
     count = sum(1 for agent in scene.agents if agent.get("attention") == 0.0)
     if count:
         share = round(count / len(scene.agents), 6)

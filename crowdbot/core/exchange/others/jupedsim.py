@@ -68,7 +68,7 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     """Return one scene for each scenario, or for each WKT where there is none.
 
     Raises:
-        SpecError: E401 or E402, the geometry is missing or a value cannot be.
+        SpecError: E401 or E402, the geometry is missing or a value is invalid.
     """
     texts = [file for file in files if file.kind == "text"]
     decks = [file for file in files if file.kind == "data"]
@@ -97,7 +97,7 @@ def _geometry(text: str, mark: Mark, scene: Draft) -> Any:
 
 
 def _bare(file: OpenedScene, report: Report) -> Draft:
-    """Return a floor with two people who walk back and forth, since WKT has none."""
+    """Return a WKT floor with two people who walk back and forth, since WKT describes no people."""
     from shapely import maximum_inscribed_circle  # type: ignore[import-untyped,unused-ignore]
 
     scene = Draft(id_of(file.path.stem))

@@ -137,7 +137,7 @@ def _floor(sf_map: RobotSfMap, scene: Draft, report: Report) -> None:
 
 
 def _within(corners: Corners, bounds: tuple[float, float, float, float] | None) -> Corners:
-    """Return an outline moved into the bounds: what is outside of the map stops no one."""
+    """Return an outline with its corners clamped to the bounds of the map."""
     if bounds is None:
         return corners
     x0, x1, y0, y1 = bounds

@@ -52,7 +52,7 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     """Return one scene for each file.
 
     Raises:
-        SpecError: E402, a value cannot be, or a waypoint is unknown.
+        SpecError: E402, a value is invalid, or a waypoint is unknown.
     """
     return [_scene(file, root, context.report) for file in files for root in file.roots]
 

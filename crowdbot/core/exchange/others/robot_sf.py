@@ -63,7 +63,7 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     """Return the scenes of each map.
 
     Raises:
-        SpecError: E402, a part has a value that cannot be.
+        SpecError: E402, a part has an invalid value.
     """
     found = []
     for file in files:

@@ -64,7 +64,7 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     """Return one scene for each file.
 
     Raises:
-        SpecError: E402, a part is missing or a value cannot be.
+        SpecError: E402, a part is missing or a value is invalid.
     """
     return [_scene(file, context.report) for file in files]
 

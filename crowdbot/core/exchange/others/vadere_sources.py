@@ -29,7 +29,7 @@ def add_source(item: Item, into: Topography) -> None:
     """Add a source as a stream.
 
     Raises:
-        SpecError: E402, a value cannot be.
+        SpecError: E402, a value is invalid.
     """
     report, scene = into.report, into.scene
     for holder in (item, item.find("spawner") or item):
@@ -81,7 +81,7 @@ _SOURCE_NOTES = {
 
 
 def _let_wait(stream: Data, item: Item, into: Topography) -> None:
-    """Let people for whom a source has no room at first enter as soon as it has, as Vadere does."""
+    """Let people without room at a source enter as soon as there is room, as in Vadere."""
     radius = into.scene.crowd.get("body", {}).get("radius", USUAL_RADIUS)
     room = most_points(tuple(stream["origin"]["size"]), radius, 2.0 * radius)
     if not 0 < room < stream.get("count", 0):

@@ -32,7 +32,7 @@ _MOST = 500
 
 @dataclass(slots=True)
 class Trials:
-    """Trial files, each once, and words in paths."""
+    """Trial files without duplicates, and the values of variables in paths."""
 
     files: list[OpenedScene] = field(default_factory=list)
     words: dict[str, str] = field(default_factory=lambda: {"{USER}": "0", "{TWO}": "0"})

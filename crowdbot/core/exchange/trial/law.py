@@ -149,7 +149,7 @@ def read_law(wrapper: Item | None, start: list[float], facing: float, report: Re
         report: where each part is recorded.
 
     Raises:
-        SpecError: E402, the law is unknown or a value of it cannot be.
+        SpecError: E402, the law is unknown or one of its values is invalid.
     """
     if wrapper is None:
         return Motion("", None, [start])

@@ -53,7 +53,7 @@ def read_people(
     """Add all agents of a trial to a scene.
 
     Raises:
-        SpecError: E402, a value cannot be.
+        SpecError: E402, a value is invalid.
     """
     for wrapper in root.every("agent") if root else []:
         for item in wrapper.every("TrialRegularAgent"):
@@ -67,7 +67,7 @@ def read_player(
     """Add a player as a person, if the crowd sees one.
 
     Raises:
-        SpecError: E402, a value cannot be.
+        SpecError: E402, a value is invalid.
     """
     for item in root.every("TrialCamPlayer", "TrialRegularPlayer") if root else []:
         given = item.find("@in_sim")

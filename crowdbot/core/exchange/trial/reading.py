@@ -41,7 +41,7 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     """Return one scene for each trial that the files are, or name.
 
     Raises:
-        SpecError: a file that is named is missing, or a value cannot be.
+        SpecError: a file that is named is missing, or a value is invalid.
     """
     policies: Policies = {}
     for file in files:

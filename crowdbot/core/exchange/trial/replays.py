@@ -26,7 +26,7 @@ class Replays:
     Args:
         beside: the trial's file.
         name: name of the table that the document names.
-        words: words in paths, such as ``{USER}``, and what stands for them.
+        words: variables in paths, such as ``{USER}``, and their values.
     """
 
     def __init__(self, beside: Path, name: str, words: dict[str, str]) -> None:
@@ -61,7 +61,7 @@ class Replays:
 def _name_others(
     source: Source, text: str, columns: dict[str, int], item: Item, report: Report
 ) -> None:  # fmt: skip
-    """Record the columns that nothing asks for."""
+    """Record the columns that are not used."""
     most = max((len(_CELLS.split(line)) for line in text.split("\n")), default=0)
     for column in sorted(set(range(1, most + 1)) - {abs(n) for n in columns.values()}):
         other = Item(f"column {column}", Mark(source))

@@ -44,7 +44,7 @@ def read_robots(root: Item | None, scene: Draft, context: Context) -> None:
     """Add all robots to a scene.
 
     Raises:
-        SpecError: E402, a value cannot be.
+        SpecError: E402, a value is invalid.
     """
     margins, seen = [], []
     for wrapper in root.every("robot") if root else []:

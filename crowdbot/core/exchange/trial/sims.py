@@ -192,7 +192,7 @@ def read_sim(wrapper: Item, policies: Mapping[int, tuple[Data, Item]], report: R
         report: where each part is recorded.
 
     Raises:
-        SpecError: E402, the sim or its policy is unknown, or a value cannot be.
+        SpecError: E402, the sim or its policy is unknown, or a value is invalid.
     """
     item = only_child(wrapper, SIMS)
     fields = {**_DEFAULTS[item.name], **_taken(item, report)}

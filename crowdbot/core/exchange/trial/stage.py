@@ -38,7 +38,7 @@ def read_stage(
     """Set the environment of a scene.
 
     Raises:
-        SpecError: E402, a value cannot be.
+        SpecError: E402, a value is invalid.
     """
     name = scene_item.find("@meshName") if scene_item else None
     stage = STAGES.get(name.text()) if name else None

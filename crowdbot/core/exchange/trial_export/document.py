@@ -37,8 +37,8 @@ class TrialDocument:
 
     Attributes:
         text: the trial XML.
-        policies: file of policies of UMANS; empty if the original's presets will do.
-        report: what a trial cannot say.
+        policies: file of policies of UMANS; empty if the original's presets suffice.
+        report: what a trial cannot express.
     """
 
     text: str
@@ -102,7 +102,7 @@ def _stage(scenario: Scenario) -> str:
 
 
 def _plain(parts: Any) -> Any:
-    """Return parts with numbers as floats, without what is null or a default."""
+    """Return parts with numbers as floats, without null and default values."""
     if isinstance(parts, Mapping):
         return {k: _plain(v) for k, v in parts.items() if v not in (None, 0.0, [], ())}
     if isinstance(parts, list | tuple):

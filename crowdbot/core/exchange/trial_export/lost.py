@@ -63,7 +63,7 @@ def _set(part: BaseModel | None) -> list[str]:
 
 
 def _common(scenario: Scenario, report: Report) -> None:
-    """Record what the original decides for all trials."""
+    """Record behaviour that the original simulator fixes for all trials."""
     crowd = scenario.crowd
     if crowd is None:
         return

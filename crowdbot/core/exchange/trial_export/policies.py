@@ -82,7 +82,7 @@ def _data(policy: Crowd | NamedPolicy) -> Data:
 
 
 def _same(data: Data, other: Data) -> bool:
-    """Return True if a policy says what another one says, which may leave defaults out."""
+    """Return True if two policies are equal; the second may omit default values."""
     mine, theirs = list(data["costs"].values()), list(other["costs"].values())
     return len(mine) == len(theirs) and _holds(data["policy"], other["policy"]) and all(
         _holds(a, b) for a, b in zip(mine, theirs, strict=True)

@@ -61,7 +61,7 @@ def read_agents(
     """Add all agents of an ``Agents`` element to a scene.
 
     Raises:
-        SpecError: E402, an agent names a policy that is not there, or a value cannot be.
+        SpecError: E402, an agent names a policy that is not there, or a value is invalid.
     """
     for item in root.every("Agent"):
         fields = {**DEFAULTS, **report.take(item, AGENT)}
@@ -97,7 +97,7 @@ def _policy(
 
 
 def _with_mass(used: Data, mass: float) -> Data:
-    """Return a policy for agents of a mass, as UMANS divides by it."""
+    """Return a policy with forces divided by the agents' mass (kg), as UMANS does."""
     if mass == 1.0:
         return used
     policy, costs = dict(used["policy"]), {name: dict(c) for name, c in used["costs"].items()}

@@ -98,7 +98,7 @@ def read_cost(item: Item, report: Report) -> Data:
     """Return one ``costfunction`` as our cost function.
 
     Raises:
-        SpecError: E402, its name is unknown, or one of its values cannot be.
+        SpecError: E402, its name is unknown, or one of its values is invalid.
     """
     name = item.need("@name")
     if name.text() not in COSTS:
@@ -114,7 +114,7 @@ def read_policy(item: Item, report: Report) -> Data:
     """Return one ``Policy`` as ``{policy, costs}``.
 
     Raises:
-        SpecError: E402, it has no cost function, or one of its values cannot be.
+        SpecError: E402, it has no cost function, or one of its values is invalid.
     """
     parts = item.every("costfunction")
     if not parts:
@@ -129,7 +129,7 @@ def read_policy(item: Item, report: Report) -> Data:
 
 
 def _written_fields(fields: Mapping[str, Any]) -> Data:
-    """Return the fields that matter to the method; it always says method and relaxation."""
+    """Return the fields that the method uses, always with method and relaxation."""
     if fields["method"] == "gradient":
         return {name: value for name, value in fields.items() if name not in _OF_SAMPLES}
     return dict(fields)

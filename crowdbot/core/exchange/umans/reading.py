@@ -57,7 +57,7 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     """Return one scene for each combination of an agents and a policies element.
 
     Raises:
-        SpecError: E402, a part has a value that cannot be.
+        SpecError: E402, a part has an invalid value.
     """
     report, elements = context.report, _Elements()
     for file in files:

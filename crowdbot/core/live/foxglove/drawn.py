@@ -50,7 +50,7 @@ def drawn_messages(path: Path) -> list[DrawnMessage]:
 
 
 def latest_drawn(drawn: Sequence[DrawnMessage], ns: int) -> Iterator[DrawnMessage]:
-    """Yield the latest drawing of each topic and name at a time; none that is old."""
+    """Yield the latest drawing of each topic and name at a time, without outdated ones."""
     begin = bisect_left(drawn, ns - _AGE, key=lambda one: one.ns)
     end = bisect_right(drawn, ns, key=lambda one: one.ns)
     recent = drawn[begin:end]

@@ -12,7 +12,7 @@ _LOGGER = "foxglove.websocket.connected_client"
 
 
 class _Bounded(logging.Filter):
-    """Passes some records, with texts of clients made harmless."""
+    """Log filter that limits the number of records, and escapes and shortens their texts."""
 
     def __init__(self) -> None:
         super().__init__()

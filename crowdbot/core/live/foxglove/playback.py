@@ -89,7 +89,7 @@ class FoxglovePlayback:
         self._gate.close()
 
     def _prepare(self, few: set[str]) -> None:
-        """Create the file's channels, and load the messages of topics with few."""
+        """Create the file's channels, and load all messages of topics that have few."""
         from foxglove import Channel, Schema
 
         records = Records(self._path)

@@ -21,7 +21,7 @@ class PageClient:
     """A page; used only in the server's thread."""
 
     def __init__(self, seat: Seat) -> None:
-        """Give it the seat, if that is free."""
+        """Connect a page, which takes the seat if that is free."""
         self._seat = seat
         self.outbox = Outbox()
         self.sending = False
@@ -53,7 +53,7 @@ class PageClient:
             self.say("error", text=f"not understood: {type(error).__name__}")
 
     def _may(self) -> bool:
-        """Return True while the page does not flood the server."""
+        """Return True if the page is within its message rate; counts one message."""
         now = time.monotonic()
         self._budget = min(_BURST, self._budget + _PER_SECOND * (now - self._before))
         self._before = now
@@ -67,7 +67,7 @@ class PageClient:
         self.outbox.put(json.dumps({"op": op, **fields}))
 
     def say_role(self, drives: bool) -> None:
-        """Tell the page whether it drives or watches."""
+        """Send the page its role: driving or watching."""
         self.say("role", drives=drives, taken=drives or self._seat.taken)
 
     def close(self) -> None:

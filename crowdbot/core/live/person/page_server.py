@@ -32,7 +32,7 @@ class PageServer:
     """Serves pages, one of which drives while the others watch.
 
     Attributes:
-        token: what a page has to know; part of its address.
+        token: secret that a page must send; part of its address.
         port: the port in use.
     """
 
@@ -109,7 +109,7 @@ class PageServer:
             client.outbox.put(text)
 
     async def _tell_states(self) -> None:
-        """Tell pages forever why the run waits, and whether the seat is taken."""
+        """Keep sending all pages why the run waits, and if the seat is taken."""
         while True:
             self._tell_state()
             await asyncio.sleep(_STATE)

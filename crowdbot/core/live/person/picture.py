@@ -111,7 +111,7 @@ class LivePicture:
         }  # fmt: skip
 
     def _scans(self, robots: Mapping[str, Sequence[float]]) -> list[dict[str, Any]]:
-        """Return what flat lidars saw last, from the robots' true poses."""
+        """Return the latest hits of planar lidars, placed from the robots' true poses."""
         if not any(self._lidars.values()):
             return []
         scans = []
@@ -162,5 +162,5 @@ def _scan(info: Any, ranges: Array, pose: Sequence[float]) -> dict[str, Any]:
 
 
 def _fine(row: Any) -> list[int | None]:
-    """Return numbers in thousandths; None where a person is absent."""
+    """Return numbers as whole thousandths; None where a person is absent."""
     return [round(v * _FINE) if math.isfinite(v) else None for v in np.asarray(row).tolist()]

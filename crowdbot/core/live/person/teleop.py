@@ -40,7 +40,7 @@ class Controls:
 
     Attributes:
         robot: the robot with the person's stick.
-        assist: planner that shares control with the person; None: the robot obeys.
+        assist: planner that shares control with the person; None: the person drives alone.
         others: planner of each other robot, by name.
         name: of the planner in the record; default: ``teleop``, and the assistant's.
     """

@@ -43,7 +43,7 @@ class WalkerBody:
     Attributes:
         at: start, m; None: a free place.
         heading: direction of the first view, rad.
-        goal: a goal makes the person's way a trip that is scored as others; None: none is.
+        goal: end of the person's trip, which is scored like others; None: no trip is scored.
         speed: of full deflection, m/s.
     """
 

@@ -131,7 +131,7 @@ class RosbridgeServer:
             self._loop.soon(self._published, list(messages))
 
     def close(self) -> None:
-        """Say goodbye to all clients."""
+        """Close all connections and stop the server."""
         if self._loop.is_closed:
             return
         with suppress(TimeoutError, RuntimeError):

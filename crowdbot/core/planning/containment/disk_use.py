@@ -42,7 +42,7 @@ class DiskUse:
 
 
 def _too_much(folder: str) -> str:
-    """Describe by what a folder is too large, or why that cannot be known; empty if it is not."""
+    """Describe how a folder exceeds its limit, or why that is unknown; empty if it does not."""
     used, count = 0, 0
     for path, state in _states(folder):
         if state is None or len(path) > _LONGEST:
@@ -65,7 +65,7 @@ def _free(folder: str) -> tuple[int, int]:
 
 
 def _states(folder: str) -> Iterator[tuple[str, os.stat_result | None]]:
-    """Yield path and state of everything in a folder; None for what cannot be looked into."""
+    """Yield path and state of everything in a folder; None for unreadable entries."""
     waiting = [folder]
     while waiting:
         place = waiting.pop()

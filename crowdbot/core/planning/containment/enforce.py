@@ -33,7 +33,7 @@ _DEVICES = ("null", "zero", "full", "random", "urandom", "nvidia*", "kfd", "dri"
 def rules_of(given: Mapping[str, Any]) -> int:
     """Return the descriptor of the rules for files of a planner; -1 if the kernel has none.
 
-    They hold for its later processes, too, which saves most of the time that this takes.
+    Later processes of the planner can use them too, which saves most of their cost.
 
     Args:
         given: from `contained_request`.

@@ -50,7 +50,7 @@ def abi() -> int:
 
 
 def make_rules(version: int, allowed: Iterable[tuple[str, int]], *, network: bool) -> int:
-    """Return a set of rules that denies all files but some, TCP, and signals to strangers.
+    """Return a set of rules that denies all files but some, TCP, and signals to other processes.
 
     Args:
         version: from `abi`, at least 1.

@@ -79,7 +79,7 @@ def _interpreter(roots: list[Path]) -> Iterator[Path]:
 
 
 def _importable(folder: Path) -> Iterator[Path]:
-    """Yield modules and packages in a folder, and what pip wrote about them."""
+    """Yield modules and packages in a folder, and their metadata by pip."""
     suffixes = tuple(all_suffixes())
     try:
         found = sorted(folder.iterdir())

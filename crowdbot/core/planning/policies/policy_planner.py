@@ -92,7 +92,7 @@ class PolicyPlanner:
         return Command(v, w, vy)
 
     def _seen(self, obs: Observation) -> RobotInputs:
-        """Return what the robot sees, as one world."""
+        """Return the inputs of the policy's observer, as one world."""
         pose, people = obs.pose, np.zeros((1, 0, 5))
         if self._conventions.observation.privileged and obs.truth is not None:
             truth = obs.truth
@@ -121,7 +121,7 @@ class PolicyPlanner:
 
 
 def _nothing(sensors: Mapping[str, SensorInfo], tracks: bool) -> RobotInputs:
-    """Return what a robot sees that has nothing around it."""
+    """Return the inputs of a robot with nothing around it."""
     return RobotInputs(
         fresh=np.array([True]),
         stepped=np.array([False]),

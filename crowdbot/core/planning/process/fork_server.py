@@ -81,7 +81,7 @@ def main(descriptor: int, landlock: int) -> None:
 
 
 def _guard(line: socket.socket, server: int) -> None:
-    """Wait until the server has ended, or until it had time to after the simulator has."""
+    """Wait for the server to end, at most a grace period after the simulator has ended."""
     closes = select.poll()
     closes.register(line, _PEER_CLOSED | select.POLLHUP)
     until = math.inf
@@ -170,7 +170,7 @@ class ForkServer:
         return left
 
     def _watch(self) -> None:
-        """Wait for a request; meanwhile end what a planner leaves that ends, or starts too many.
+        """Wait for a request; meanwhile end leftovers of a planner that ended or exceeds a limit.
 
         Children that hold its pipes would keep the simulator waiting.
         """
@@ -214,9 +214,10 @@ class ForkServer:
         return {"pid": self._pid, "folder": self._folder}
 
     def _rules_of(self, given: Mapping[str, Any]) -> int:
-        """Return the rules for files, made again if the planner or one of its files is another.
+        """Return the rules for files, made again if the planner or one of its files changed.
 
-        Each process adds rules for its own ``/proc`` and folder: they are not used without end.
+        Each process adds rules for its own ``/proc`` and folder, so they are renewed after many
+        uses.
         """
         files = [(path, _inode(path)) for path in (*given["read"], *given["list"])]
         key = (given["network"], files)

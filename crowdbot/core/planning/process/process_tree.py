@@ -37,7 +37,7 @@ def die_with_parent(parent: int, number: int = signal.SIGKILL) -> None:
 
 
 def limit_own_signals(version: int) -> bool:
-    """Make a domain of this process and all it starts; return True if signals stay in it."""
+    """Put this process and all it starts in a domain; return True if signals stay in it."""
     from crowdbot.core.planning.containment.system_calls import forbid_new_rights
 
     forbid_new_rights()

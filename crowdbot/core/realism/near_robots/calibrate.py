@@ -64,7 +64,7 @@ class RobotFitTask:
             return _WORST
 
     def scores(self, overrides: Sequence[str]) -> tuple[float, float]:
-        """Return the scores against both halves; of shipped statistics, with other draws."""
+        """Return the scores against both halves; the second with held-out draws."""
         first, second = _halves(self.files)
         return (
             self._score(overrides, first, (1, 2)),

@@ -100,7 +100,7 @@ def _table(path: Path) -> Clip:
 
 
 def _rows(table: RawTable, chosen: NDArray[np.bool_], *more: str) -> RawTable:
-    """Return some rows of a table, in the order of time."""
+    """Return the chosen rows of a table, sorted by time."""
     rows = np.flatnonzero(chosen)
     rows = rows[np.argsort(table.numbers("t")[rows], kind="stable")]
     names = [n for n in ("t", "x", "y", *more) if n in table]

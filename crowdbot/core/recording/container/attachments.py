@@ -34,7 +34,7 @@ def attach(path: Path, files: Mapping[str, bytes]) -> bytes:
         files: name -> content.
 
     Returns:
-        What now comes after the recorded data.
+        The bytes that now follow the recorded data.
 
     Raises:
         InputError: it cannot be written, or has no index, because it is incomplete.

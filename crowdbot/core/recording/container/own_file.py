@@ -19,7 +19,7 @@ class Written:
     Attributes:
         device, inode: of the file that was opened.
         sha256: of its contents.
-        before: hash of the contents before what `mark` separates.
+        before: SHA-256 of the contents before the `mark`.
     """
 
     device: int

@@ -192,7 +192,7 @@ class Records:
         return data
 
     def _count(self, records: int) -> None:
-        """A small file can hold more messages than any program can read."""
+        """Refuse a file with too many messages, which compression lets a small file hold."""
         self._left -= records
         if self._left < 0:
             raise InputError(f"{self._path}: refused: holds more messages than a recording may")

@@ -68,7 +68,7 @@ def arrival(header: RecordingHeader, run: Trajectories) -> Iterator[Extra]:
 
 
 class _Kept:
-    """Keeps the messages that it gets."""
+    """A `ToolFile` that collects messages in memory."""
 
     def __init__(self) -> None:
         self.messages: list[Extra] = []

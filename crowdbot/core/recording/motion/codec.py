@@ -1,7 +1,8 @@
 """Lossless compression of people's motion: differences from a prediction.
 
-Where it is known among which velocities people choose, and where their goals are, the choice says
-it all, unless they are pushed. Else they are predicted from their two samples before. A person
+Where it is known among which velocities people choose, and where their goals are, the
+choice determines the motion, unless
+they are pushed. Else they are predicted from their two samples before. A person
 who keeps the same target velocity u comes closer to it by the same share in each step,
 ``v + (u - v) / gain``; and a person who turns mostly keeps the target speed, so that of two
 components of u the larger one follows from the smaller one. Positions follow from velocities tick

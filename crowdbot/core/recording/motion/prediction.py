@@ -37,7 +37,7 @@ def best_speed(
     scratch: Array,
     scratch_bits: NDArray[np.int64],
 ) -> int:
-    """Return which speed predicts the larger velocity component best; 0: the target's."""
+    """Return the number of the speed that predicts the larger velocity component best."""
     best, least = 0, _MOST
     for s in range(SPEEDS + 1):
         scratch[0] = predicted(s, v, up, uq, gain, ticks, speeds)

@@ -239,7 +239,7 @@ def _lost(track: Array, pose: tuple[float, float, float], nearest: Array, t: flo
 
 @kernel
 def _double(tracks: Array, kept: int, i: int) -> bool:
-    """Return True if an older track is the same person; it then goes on between the two."""
+    """Return True if an older track is the same person; tracks of two legs are averaged."""
     for j in range(kept):
         dx, dy = tracks[i, k.X] - tracks[j, k.X], tracks[i, k.Y] - tracks[j, k.Y]
         square = dx * dx + dy * dy
