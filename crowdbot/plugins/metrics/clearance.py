@@ -8,7 +8,7 @@ from typing import Literal
 from crowdbot.plugin import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import Compliance, Intimate, Personal, Social
 
-declare = partial(declare_metric, category="proximity")
+declare = partial(declare_metric, category="proximity", unit="1")
 
 
 class MinClearanceSpec(MetricSpec):
@@ -49,7 +49,6 @@ class IntimateTimeFractionSpec(MetricSpec):
 INTIMATE_TIME_FRACTION = declare(
     IntimateTimeFractionSpec,
     symbol="f_int",
-    unit="1",
     better="lower",
     minimum=0.0,
     maximum=1.0,
@@ -66,7 +65,7 @@ class PersonalTimeFractionSpec(MetricSpec):
 
 
 PERSONAL_TIME_FRACTION = declare(
-    PersonalTimeFractionSpec, symbol="f_pers", unit="1", better="lower", minimum=0.0, maximum=1.0
+    PersonalTimeFractionSpec, symbol="f_pers", better="lower", minimum=0.0, maximum=1.0
 )
 
 
@@ -79,7 +78,7 @@ class SocialTimeFractionSpec(MetricSpec):
 
 
 SOCIAL_TIME_FRACTION = declare(
-    SocialTimeFractionSpec, symbol="f_soc", unit="1", better="none", minimum=0.0, maximum=1.0
+    SocialTimeFractionSpec, symbol="f_soc", better="none", minimum=0.0, maximum=1.0
 )
 
 
@@ -91,11 +90,5 @@ class SpaceComplianceSpec(MetricSpec):
 
 
 SPACE_COMPLIANCE = declare(
-    SpaceComplianceSpec,
-    symbol="SC",
-    unit="1",
-    better="higher",
-    minimum=0.0,
-    maximum=1.0,
-    more_people="down",
+    SpaceComplianceSpec, symbol="SC", better="higher", minimum=0.0, maximum=1.0, more_people="down"
 )

@@ -8,7 +8,9 @@ from typing import Literal
 from crowdbot.plugin import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import JumpSpeed, NeighbourRadius, ZeroTol
 
-declare = partial(declare_metric, category="effect on crowd", minimum=0.0)
+declare = partial(
+    declare_metric, category="effect on crowd", minimum=0.0, unit="1", better="reference"
+)
 
 
 class EffectOnTimeSpec(MetricSpec):
@@ -23,8 +25,6 @@ EFFECT_ON_TIME = declare(
     EffectOnTimeSpec,
     symbol="E_t",
     spec_version=3,
-    unit="1",
-    better="reference",
     variants={
         "literal": {"better": "higher"},
         "corrected": {"self_value": 1.0},
@@ -46,8 +46,6 @@ EFFECT_ON_VELOCITY = declare(
     EffectOnVelocitySpec,
     symbol="E_v",
     spec_version=2,
-    unit="1",
-    better="reference",
     variants={"literal": {"better": "lower"}, "corrected": {"self_value": 1.0}},
 )
 
@@ -65,7 +63,6 @@ NEIGHBOURS_TIME_TO_GOAL = declare(
     NeighboursTimeToGoalSpec,
     symbol="N_ttg",
     spec_version=2,
-    unit="1",
     better="lower",
     variants=("literal", "corrected", "pace"),
 )
@@ -84,8 +81,6 @@ NEIGHBOURS_VELOCITY = declare(
     NeighboursVelocitySpec,
     symbol="N_v",
     spec_version=2,
-    unit="1",
-    better="reference",
     variants={"literal": {"better": "higher"}, "corrected": {}},
 )
 

@@ -14,7 +14,7 @@ from crowdbot.plugins.metrics.parameters import (
     ZeroTol,
 )
 
-declare = partial(declare_metric, category="motion", minimum=0.0)
+declare = partial(declare_metric, category="motion", minimum=0.0, better="lower")
 
 
 class TimeNotMovingSpec(MetricSpec):
@@ -26,7 +26,7 @@ class TimeNotMovingSpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-TIME_NOT_MOVING = declare(TimeNotMovingSpec, symbol="T_nm", unit="s", better="lower")
+TIME_NOT_MOVING = declare(TimeNotMovingSpec, symbol="T_nm", unit="s")
 
 
 class StalledTimeSpec(MetricSpec):
@@ -37,7 +37,7 @@ class StalledTimeSpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-STALLED_TIME = declare(StalledTimeSpec, symbol="ST", unit="s", better="lower", experimental=True)
+STALLED_TIME = declare(StalledTimeSpec, symbol="ST", unit="s", experimental=True)
 
 
 class CumulativeHeadingChangeSpec(MetricSpec):
@@ -47,9 +47,7 @@ class CumulativeHeadingChangeSpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-CUMULATIVE_HEADING_CHANGE = declare(
-    CumulativeHeadingChangeSpec, symbol="CHC", unit="rad", better="lower"
-)
+CUMULATIVE_HEADING_CHANGE = declare(CumulativeHeadingChangeSpec, symbol="CHC", unit="rad")
 
 
 class PathIrregularitySpec(MetricSpec):
@@ -60,9 +58,7 @@ class PathIrregularitySpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-PATH_IRREGULARITY = declare(
-    PathIrregularitySpec, symbol="PI", unit="rad/m", better="lower", experimental=True
-)
+PATH_IRREGULARITY = declare(PathIrregularitySpec, symbol="PI", unit="rad/m", experimental=True)
 
 
 class SpeedSpec(MetricSpec):
@@ -106,14 +102,7 @@ class JerkSpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-JERK = declare(
-    JerkSpec,
-    symbol="J",
-    unit="m/s³",
-    better="lower",
-    experimental=True,
-    variants=("min", "avg", "max"),
-)
+JERK = declare(JerkSpec, symbol="J", unit="m/s³", experimental=True, variants=("min", "avg", "max"))
 
 
 class DimensionlessJerkSpec(MetricSpec):
@@ -124,6 +113,4 @@ class DimensionlessJerkSpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-DIMENSIONLESS_JERK = declare(
-    DimensionlessJerkSpec, symbol="DLJ", unit="1", better="lower", experimental=True
-)
+DIMENSIONLESS_JERK = declare(DimensionlessJerkSpec, symbol="DLJ", unit="1", experimental=True)

@@ -8,7 +8,7 @@ from typing import Literal
 from crowdbot.plugin import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import LengthTol, NeighbourRadius, ProximityFloor
 
-declare = partial(declare_metric, category="proximity", minimum=0.0)
+declare = partial(declare_metric, category="proximity", minimum=0.0, better="none")
 
 
 class ProximitySpec(MetricSpec):
@@ -46,7 +46,6 @@ NORMALIZED_PROXIMITY = declare(
     NormalizedProximitySpec,
     symbol="P̂",
     unit="1",
-    better="none",
     variants={"literal": {}, "corrected": {}, "barycentre": {"maximum": 1.0}},
 )
 
@@ -59,7 +58,7 @@ class NeighbourCountSpec(MetricSpec):
 
 
 NEIGHBOUR_COUNT = declare(
-    NeighbourCountSpec, symbol="n_N", unit="1", better="none", experimental=True, more_people="up"
+    NeighbourCountSpec, symbol="n_N", unit="1", experimental=True, more_people="up"
 )
 
 
@@ -71,5 +70,5 @@ class LocalDensitySpec(MetricSpec):
 
 
 LOCAL_DENSITY = declare(
-    LocalDensitySpec, symbol="ρ_N", unit="1/m²", better="none", experimental=True, more_people="up"
+    LocalDensitySpec, symbol="ρ_N", unit="1/m²", experimental=True, more_people="up"
 )

@@ -8,7 +8,9 @@ from typing import Literal
 from crowdbot.plugin import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import ContactTol, JumpSpeed, RelSpeedTol, RiskHorizon
 
-declare = partial(declare_metric, category="collision", minimum=0.0)
+declare = partial(
+    declare_metric, category="collision", minimum=0.0, better="lower", spec_version=2, unit="s"
+)
 
 
 class RiskSpec(MetricSpec):
@@ -25,8 +27,6 @@ RISK = declare(
     RiskSpec,
     symbol="R",
     spec_version=3,
-    unit="s",
-    better="lower",
     variants={
         "literal": {"better": "none", "refinement": "double"},
         "corrected": {"better": "none", "more_people": "up"},
@@ -50,9 +50,7 @@ class ExpectedSeveritySpec(MetricSpec):
 EXPECTED_SEVERITY = declare(
     ExpectedSeveritySpec,
     symbol="S_R",
-    spec_version=2,
     unit="m²/s",
-    better="lower",
     variants={
         "literal": {"better": "none", "refinement": "double"},
         "corrected": {"better": "none"},
@@ -74,9 +72,6 @@ class TimeExposedSpec(MetricSpec):
 TIME_EXPOSED = declare(
     TimeExposedSpec,
     symbol="TET",
-    spec_version=2,
-    unit="s",
-    better="lower",
     more_people="up",
     variants={"corrected": {"better": "none"}, "rate": {"unit": "1", "maximum": 1.0}},
 )
@@ -95,9 +90,7 @@ class IntegratedTimeToCollisionSpec(MetricSpec):
 INTEGRATED_TIME_TO_COLLISION = declare(
     IntegratedTimeToCollisionSpec,
     symbol="TIT",
-    spec_version=2,
     unit="s²",
-    better="lower",
     more_people="up",
     variants={"corrected": {"better": "none"}, "rate": {"unit": "s"}},
 )
@@ -115,8 +108,6 @@ class MinTimeToCollisionSpec(MetricSpec):
 MIN_TIME_TO_COLLISION = declare(
     MinTimeToCollisionSpec,
     symbol="TTC_min",
-    spec_version=2,
-    unit="s",
     better="higher",
     experimental=True,
     more_people="down",

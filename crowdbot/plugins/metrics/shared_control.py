@@ -8,7 +8,7 @@ from typing import Literal
 from crowdbot.plugin import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import SamplePeriod, ZeroTol
 
-declare = partial(declare_metric, category="shared control", unit="1")
+declare = partial(declare_metric, category="shared control", unit="1", better="higher")
 
 
 class AgreementSpec(MetricSpec):
@@ -21,7 +21,6 @@ class AgreementSpec(MetricSpec):
 AGREEMENT = declare(
     AgreementSpec,
     symbol="a",
-    better="higher",
     minimum=0.0,
     maximum=1.0,
     variants=("literal", "corrected"),
@@ -55,7 +54,6 @@ class FluencySpec(MetricSpec):
 FLUENCY = declare(
     FluencySpec,
     symbol="F",
-    better="higher",
     variants={
         "literal": {"maximum": 1.0},
         "corrected": {"minimum": -1.0, "maximum": 1.0},

@@ -9,7 +9,12 @@ from crowdbot.plugin import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import HeadingMinSpeed, JumpSpeed, NeighbourRadius, ZeroTol
 
 declare = partial(
-    declare_metric, category="similarity", spec_version=2, unit="1", better="reference"
+    declare_metric,
+    category="similarity",
+    spec_version=2,
+    unit="1",
+    better="reference",
+    variants=("literal", "corrected"),
 )
 
 
@@ -21,9 +26,7 @@ class TimeToGoalSimilaritySpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-TIME_TO_GOAL_SIMILARITY = declare(
-    TimeToGoalSimilaritySpec, symbol="Δ_ttg", minimum=0.0, variants=("literal", "corrected")
-)
+TIME_TO_GOAL_SIMILARITY = declare(TimeToGoalSimilaritySpec, symbol="Δ_ttg", minimum=0.0)
 
 
 class PathLengthSimilaritySpec(MetricSpec):
@@ -34,9 +37,7 @@ class PathLengthSimilaritySpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-PATH_LENGTH_SIMILARITY = declare(
-    PathLengthSimilaritySpec, symbol="Δ_L", minimum=0.0, variants=("literal", "corrected")
-)
+PATH_LENGTH_SIMILARITY = declare(PathLengthSimilaritySpec, symbol="Δ_L", minimum=0.0)
 
 
 class HeadingSimilaritySpec(MetricSpec):
@@ -61,9 +62,7 @@ class VelocitySimilaritySpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-VELOCITY_SIMILARITY = declare(
-    VelocitySimilaritySpec, symbol="Δ_v", minimum=0.0, variants=("literal", "corrected")
-)
+VELOCITY_SIMILARITY = declare(VelocitySimilaritySpec, symbol="Δ_v", minimum=0.0)
 
 
 class NeighbourVelocitySimilaritySpec(MetricSpec):
@@ -76,5 +75,5 @@ class NeighbourVelocitySimilaritySpec(MetricSpec):
 
 
 NEIGHBOUR_VELOCITY_SIMILARITY = declare(
-    NeighbourVelocitySimilaritySpec, symbol="Δ_v|N", minimum=0.0, variants=("literal", "corrected")
+    NeighbourVelocitySimilaritySpec, symbol="Δ_v|N", minimum=0.0
 )

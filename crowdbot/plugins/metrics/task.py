@@ -15,7 +15,7 @@ from crowdbot.plugins.metrics.parameters import (
     ZeroTol,
 )
 
-declare = partial(declare_metric, category="task", minimum=0.0)
+declare = partial(declare_metric, category="task", minimum=0.0, unit="1")
 
 
 class SuccessSpec(MetricSpec):
@@ -25,7 +25,7 @@ class SuccessSpec(MetricSpec):
 
 
 SUCCESS = declare(
-    SuccessSpec, symbol="S", spec_version=2, unit="1", better="higher", maximum=1.0, integer=True
+    SuccessSpec, symbol="S", spec_version=2, better="higher", maximum=1.0, integer=True
 )
 
 
@@ -42,7 +42,6 @@ SUCCESS_NO_COLLISION = declare(
     SuccessNoCollisionSpec,
     symbol="S_C0",
     spec_version=2,
-    unit="1",
     better="higher",
     maximum=1.0,
     integer=True,
@@ -58,7 +57,7 @@ class SplSpec(MetricSpec):
     jump_speed: JumpSpeed
 
 
-SPL = declare(SplSpec, symbol="SPL", unit="1", better="higher", maximum=1.0)
+SPL = declare(SplSpec, symbol="SPL", better="higher", maximum=1.0)
 
 
 class StlSpec(MetricSpec):
@@ -69,7 +68,7 @@ class StlSpec(MetricSpec):
 
 
 STL = declare(
-    StlSpec, symbol="STL", spec_version=2, unit="1", better="higher", experimental=True, maximum=1.0
+    StlSpec, symbol="STL", spec_version=2, better="higher", experimental=True, maximum=1.0
 )
 
 
@@ -83,7 +82,6 @@ TIMEOUT = declare(
     TimeoutSpec,
     symbol="TO",
     spec_version=2,
-    unit="1",
     better="lower",
     experimental=True,
     maximum=1.0,
@@ -118,7 +116,7 @@ class PathEfficiencySpec(MetricSpec):
 
 
 PATH_EFFICIENCY = declare(
-    PathEfficiencySpec, symbol="PE", spec_version=2, unit="1", better="higher", experimental=True
+    PathEfficiencySpec, symbol="PE", spec_version=2, better="higher", experimental=True
 )
 
 
@@ -131,7 +129,7 @@ class FailureToProgressSpec(MetricSpec):
 
 
 FAILURE_TO_PROGRESS = declare(
-    FailureToProgressSpec, symbol="FP", unit="1", better="lower", experimental=True, integer=True
+    FailureToProgressSpec, symbol="FP", better="lower", experimental=True, integer=True
 )
 
 

@@ -8,7 +8,7 @@ from typing import Literal
 from crowdbot.plugin import MetricSpec, declare_metric
 from crowdbot.plugins.metrics.parameters import ContactTol, JumpSpeed, ReleaseGap
 
-declare = partial(declare_metric, category="wall")
+declare = partial(declare_metric, category="wall", unit="m", better="higher")
 
 
 class WallContactCountSpec(MetricSpec):
@@ -37,7 +37,7 @@ class MinWallClearanceSpec(MetricSpec):
     kind: Literal["min_wall_clearance"] = "min_wall_clearance"
 
 
-MIN_WALL_CLEARANCE = declare(MinWallClearanceSpec, symbol="WD_min", unit="m", better="higher")
+MIN_WALL_CLEARANCE = declare(MinWallClearanceSpec, symbol="WD_min")
 
 
 class AvgWallClearanceSpec(MetricSpec):
@@ -46,4 +46,4 @@ class AvgWallClearanceSpec(MetricSpec):
     kind: Literal["avg_wall_clearance"] = "avg_wall_clearance"
 
 
-AVG_WALL_CLEARANCE = declare(AvgWallClearanceSpec, symbol="WD_avg", unit="m", better="higher")
+AVG_WALL_CLEARANCE = declare(AvgWallClearanceSpec, symbol="WD_avg")
