@@ -4,18 +4,11 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
+import crowdbot.plugins.robots.limits as limits
 from crowdbot.plugin import Component, PositiveForce, PositiveStiffness, default
-from crowdbot.plugins.robots.limits import (
-    LimitedRobotSpec,
-    Mass,
-    MaxAcceleration,
-    MaxSpeed,
-    MaxYawAcceleration,
-    MaxYawRate,
-)
 
 
-class CuybotSpec(LimitedRobotSpec):
+class CuybotSpec(limits.LimitedRobotSpec):
     """CuyBot with size and mass of the original's prefab; nothing else about it is published.
 
     It yields: a push above `yield_force` moves it, and afterwards it brakes with that force. Its
@@ -24,11 +17,11 @@ class CuybotSpec(LimitedRobotSpec):
 
     controls: ClassVar[tuple[str, ...]] = ("force", "kinematic")
     kind: Literal["cuybot"] = "cuybot"
-    max_speed: MaxSpeed = 1.5
-    max_yaw_rate: MaxYawRate = 2.0
-    max_acceleration: MaxAcceleration = 1.0
-    max_yaw_acceleration: MaxYawAcceleration = 2.0
-    mass: Mass = 100.0
+    max_speed: limits.MaxSpeed = 1.5
+    max_yaw_rate: limits.MaxYawRate = 2.0
+    max_acceleration: limits.MaxAcceleration = 1.0
+    max_yaw_acceleration: limits.MaxYawAcceleration = 2.0
+    mass: limits.Mass = 100.0
     yield_force: PositiveForce = default(120.0, "Largest force of its drive, in any direction, N.")
     skin_stiffness: PositiveStiffness = default(
         10000.0, "Of the skin, in series with the person's body, N/m."

@@ -4,18 +4,11 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
+import crowdbot.plugins.robots.limits as limits
 from crowdbot.plugin import Component
-from crowdbot.plugins.robots.limits import (
-    LimitedRobotSpec,
-    Mass,
-    MaxAcceleration,
-    MaxSpeed,
-    MaxYawAcceleration,
-    MaxYawRate,
-)
 
 
-class PepperSpec(LimitedRobotSpec):
+class PepperSpec(limits.LimitedRobotSpec):
     """Pepper, which drives in every direction; its arms and head are held still.
 
     The mass is from the published URDF. Speed and acceleration are those usually given for its
@@ -24,11 +17,11 @@ class PepperSpec(LimitedRobotSpec):
 
     controls: ClassVar[tuple[str, ...]] = ("force", "kinematic")
     kind: Literal["pepper"] = "pepper"
-    max_speed: MaxSpeed = 0.55
-    max_yaw_rate: MaxYawRate = 2.0
-    max_acceleration: MaxAcceleration = 0.55
-    max_yaw_acceleration: MaxYawAcceleration = 3.0
-    mass: Mass = 28.7
+    max_speed: limits.MaxSpeed = 0.55
+    max_yaw_rate: limits.MaxYawRate = 2.0
+    max_acceleration: limits.MaxAcceleration = 0.55
+    max_yaw_acceleration: limits.MaxYawAcceleration = 3.0
+    mass: limits.Mass = 28.7
 
     @property
     def half_width(self) -> float:

@@ -4,18 +4,11 @@ from __future__ import annotations
 
 from typing import Literal
 
+import crowdbot.plugins.robots.limits as limits
 from crowdbot.plugin import Component, PositiveLength, default
-from crowdbot.plugins.robots.limits import (
-    LimitedRobotSpec,
-    Mass,
-    MaxAcceleration,
-    MaxSpeed,
-    MaxYawAcceleration,
-    MaxYawRate,
-)
 
 
-class QoloSpec(LimitedRobotSpec):
+class QoloSpec(limits.LimitedRobotSpec):
     """Qolo with limits and outline of EPFL's controller; the mass, with rider, is proposed.
 
     The original's prefab weighs 254 kg. The real motors cannot turn the robot at full speed, which
@@ -23,11 +16,11 @@ class QoloSpec(LimitedRobotSpec):
     """
 
     kind: Literal["qolo"] = "qolo"
-    max_speed: MaxSpeed = 1.5
-    max_yaw_rate: MaxYawRate = 1.18
-    max_acceleration: MaxAcceleration = 1.5
-    max_yaw_acceleration: MaxYawAcceleration = 4.5
-    mass: Mass = 120.0
+    max_speed: limits.MaxSpeed = 1.5
+    max_yaw_rate: limits.MaxYawRate = 1.18
+    max_acceleration: limits.MaxAcceleration = 1.5
+    max_yaw_acceleration: limits.MaxYawAcceleration = 4.5
+    mass: limits.Mass = 120.0
     radius: PositiveLength = default(0.4, "Of the capsule that is its outline, m.", le=0.5, ge=0.3)
 
     @property

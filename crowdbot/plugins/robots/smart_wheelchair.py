@@ -4,18 +4,11 @@ from __future__ import annotations
 
 from typing import Literal
 
+import crowdbot.plugins.robots.limits as limits
 from crowdbot.plugin import Component, PositiveLength, default
-from crowdbot.plugins.robots.limits import (
-    LimitedRobotSpec,
-    Mass,
-    MaxAcceleration,
-    MaxSpeed,
-    MaxYawAcceleration,
-    MaxYawRate,
-)
 
 
-class SmartWheelchairSpec(LimitedRobotSpec):
+class SmartWheelchairSpec(limits.LimitedRobotSpec):
     """A powered wheelchair.
 
     Its width is that of the real chair, which drives 2.78 m/s outdoors; all else is proposed.
@@ -24,11 +17,11 @@ class SmartWheelchairSpec(LimitedRobotSpec):
     """
 
     kind: Literal["smart_wheelchair"] = "smart_wheelchair"
-    max_speed: MaxSpeed = 1.5
-    max_yaw_rate: MaxYawRate = 1.5
-    max_acceleration: MaxAcceleration = 1.0
-    max_yaw_acceleration: MaxYawAcceleration = 2.0
-    mass: Mass = 205.0
+    max_speed: limits.MaxSpeed = 1.5
+    max_yaw_rate: limits.MaxYawRate = 1.5
+    max_acceleration: limits.MaxAcceleration = 1.0
+    max_yaw_acceleration: limits.MaxYawAcceleration = 2.0
+    mass: limits.Mass = 205.0
     length: PositiveLength = default(1.1, "Foot rests included, m.", ge=0.9, le=1.3)
     width: PositiveLength = default(0.61, "m.", ge=0.6, le=0.75)
 

@@ -4,28 +4,21 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
+import crowdbot.plugins.robots.limits as limits
 from crowdbot.plugin import Component
-from crowdbot.plugins.robots.limits import (
-    LimitedRobotSpec,
-    Mass,
-    MaxAcceleration,
-    MaxSpeed,
-    MaxYawAcceleration,
-    MaxYawRate,
-)
 
 
-class Turtlebot2Spec(LimitedRobotSpec):
+class Turtlebot2Spec(limits.LimitedRobotSpec):
     """TurtleBot2 with a box of limits; the body itself is fixed."""
 
     wheels: ClassVar[tuple[float, float]] = (0.035, 0.23)
 
     kind: Literal["turtlebot2"] = "turtlebot2"
-    max_speed: MaxSpeed = 0.65
-    max_yaw_rate: MaxYawRate = 3.14
-    max_acceleration: MaxAcceleration = 1.0
-    max_yaw_acceleration: MaxYawAcceleration = 2.0
-    mass: Mass = 6.3
+    max_speed: limits.MaxSpeed = 0.65
+    max_yaw_rate: limits.MaxYawRate = 3.14
+    max_acceleration: limits.MaxAcceleration = 1.0
+    max_yaw_acceleration: limits.MaxYawAcceleration = 2.0
+    mass: limits.Mass = 6.3
 
     @property
     def half_width(self) -> float:
