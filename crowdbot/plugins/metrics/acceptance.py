@@ -7,14 +7,8 @@ from typing import Annotated, Literal
 
 from annotated_types import Ge
 
+import crowdbot.plugins.metrics.parameters as parameters
 from crowdbot.plugin import MetricSpec, declare_metric, default
-from crowdbot.plugins.metrics.parameters import (
-    ContactTol,
-    DemandRoom,
-    DemandTime,
-    JumpSpeed,
-    ReleaseGap,
-)
 
 declare = partial(declare_metric, category="task")
 _Weight = Annotated[float, Ge(0)]
@@ -35,11 +29,11 @@ class AcceptanceSpec(MetricSpec):
         "0.5 m of room, s/m².",
     )
     forcing: _Weight = default(0.3, "Weight of the largest demanded evasion, relative to 3 m/s².")
-    demand_time: DemandTime
-    demand_room: DemandRoom
-    contact_tol: ContactTol
-    release_gap: ReleaseGap
-    jump_speed: JumpSpeed
+    demand_time: parameters.DemandTime
+    demand_room: parameters.DemandRoom
+    contact_tol: parameters.ContactTol
+    release_gap: parameters.ReleaseGap
+    jump_speed: parameters.JumpSpeed
 
 
 ACCEPTANCE = declare(

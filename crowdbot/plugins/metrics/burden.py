@@ -5,16 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Literal
 
+import crowdbot.plugins.metrics.parameters as parameters
 from crowdbot.plugin import MetricSpec, declare_metric
-from crowdbot.plugins.metrics.parameters import (
-    DemandRoom,
-    DemandTime,
-    EvasionReach,
-    ForcedHeadway,
-    JumpSpeed,
-    LeastWay,
-    UsualAcceleration,
-)
 
 declare = partial(declare_metric, category="burden", better="lower")
 
@@ -23,13 +15,13 @@ class PushWorkSpec(MetricSpec):
     """Work of pushing people aside, per metre of progress and per person met."""
 
     kind: Literal["push_work"] = "push_work"
-    demand_time: DemandTime
-    demand_room: DemandRoom
-    usual_acceleration: UsualAcceleration
-    forced_headway: ForcedHeadway
-    least_way: LeastWay
-    evasion_reach: EvasionReach
-    jump_speed: JumpSpeed
+    demand_time: parameters.DemandTime
+    demand_room: parameters.DemandRoom
+    usual_acceleration: parameters.UsualAcceleration
+    forced_headway: parameters.ForcedHeadway
+    least_way: parameters.LeastWay
+    evasion_reach: parameters.EvasionReach
+    jump_speed: parameters.JumpSpeed
 
 
 PUSH_WORK = declare(
@@ -52,8 +44,8 @@ class EvasiveAccelerationSpec(MetricSpec):
     """Accelerations of people near the robot."""
 
     kind: Literal["evasive_acceleration"] = "evasive_acceleration"
-    evasion_reach: EvasionReach
-    jump_speed: JumpSpeed
+    evasion_reach: parameters.EvasionReach
+    jump_speed: parameters.JumpSpeed
 
 
 EVASIVE_ACCELERATION = declare(

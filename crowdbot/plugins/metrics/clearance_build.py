@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+import crowdbot.plugins.metrics.clearance as specs
 from crowdbot.plugin import (
     Array,
     References,
@@ -16,21 +17,13 @@ from crowdbot.plugin import (
     time_weights,
 )
 from crowdbot.plugin.for_metrics import as_disc, encounter
-from crowdbot.plugins.metrics.clearance import (
-    AvgClearanceSpec,
-    IntimateTimeFractionSpec,
-    MinClearanceSpec,
-    PersonalTimeFractionSpec,
-    SocialTimeFractionSpec,
-    SpaceComplianceSpec,
-)
 from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 
 #: Tolerance at the edges of zones, m: a person on an edge is outside, despite rounding.
 EDGE = 1e-9
 
 
-class MinClearance(RobotMetric[MinClearanceSpec]):
+class MinClearance(RobotMetric[specs.MinClearanceSpec]):
     """Scores ``min_clearance``: the smallest gap, for the outline and for the disc around it.
 
     Negative where bodies overlap.
@@ -41,7 +34,7 @@ class MinClearance(RobotMetric[MinClearanceSpec]):
         return [self.factory.ok("corrected", gap.min()), self.factory.ok("disc", of_disc.min())]
 
 
-class AvgClearance(RobotMetric[AvgClearanceSpec]):
+class AvgClearance(RobotMetric[specs.AvgClearanceSpec]):
     """Scores ``avg_clearance``: the mean gap over the time at which a person is present."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -55,14 +48,14 @@ class AvgClearance(RobotMetric[AvgClearanceSpec]):
         return [self.factory.ok("corrected", mean, {"coverage": coverage})]
 
 
-class IntimateTimeFraction(RobotMetric[IntimateTimeFractionSpec]):
+class IntimateTimeFraction(RobotMetric[specs.IntimateTimeFractionSpec]):
     """Scores ``intimate_time_fraction``: the share of time inside the intimate zone."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         return time_within(self.factory, run, -np.inf, self.spec.intimate)
 
 
-class PersonalTimeFraction(RobotMetric[PersonalTimeFractionSpec]):
+class PersonalTimeFraction(RobotMetric[specs.PersonalTimeFractionSpec]):
     """Scores ``personal_time_fraction``: the share of time in the personal zone."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -70,14 +63,14 @@ class PersonalTimeFraction(RobotMetric[PersonalTimeFractionSpec]):
         return time_within(self.factory, run, *zone)
 
 
-class SocialTimeFraction(RobotMetric[SocialTimeFractionSpec]):
+class SocialTimeFraction(RobotMetric[specs.SocialTimeFractionSpec]):
     """Scores ``social_time_fraction``: the share of time in the social zone."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         return time_within(self.factory, run, self.spec.personal, self.spec.social)
 
 
-class SpaceCompliance(RobotMetric[SpaceComplianceSpec]):
+class SpaceCompliance(RobotMetric[specs.SpaceComplianceSpec]):
     """Scores ``space_compliance``: the share of time beyond the required gap.
 
     Time without people counts as compliant.

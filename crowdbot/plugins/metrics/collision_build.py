@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+import crowdbot.plugins.metrics.collision as specs
 from crowdbot.plugin import Array, References, Score, Trajectories, duration, path_length
 from crowdbot.plugin.for_metrics import (
     PersonContacts,
@@ -19,12 +20,6 @@ from crowdbot.plugin.for_metrics import (
     robot_velocities,
     touching,
 )
-from crowdbot.plugins.metrics.collision import (
-    CollisionCountSpec,
-    CollisionRateSpec,
-    CollisionsAtFaultSpec,
-    CollisionSeveritySpec,
-)
 from crowdbot.plugins.metrics.declared_build import RobotMetric
 from crowdbot.plugins.metrics.task import SuccessNoCollisionSpec
 
@@ -32,15 +27,15 @@ from crowdbot.plugins.metrics.task import SuccessNoCollisionSpec
 TOLERANCE = 1e-9
 
 _Spec = (
-    CollisionCountSpec
-    | CollisionSeveritySpec
-    | CollisionRateSpec
-    | CollisionsAtFaultSpec
+    specs.CollisionCountSpec
+    | specs.CollisionSeveritySpec
+    | specs.CollisionRateSpec
+    | specs.CollisionsAtFaultSpec
     | SuccessNoCollisionSpec
 )
 
 
-class CollisionCount(RobotMetric[CollisionCountSpec]):
+class CollisionCount(RobotMetric[specs.CollisionCountSpec]):
     """Scores ``collision_count``: all contacts, however short.
 
     ``literal``: sequences of samples in contact.
@@ -56,7 +51,7 @@ class CollisionCount(RobotMetric[CollisionCountSpec]):
         ]
 
 
-class CollisionSeverity(RobotMetric[CollisionSeveritySpec]):
+class CollisionSeverity(RobotMetric[specs.CollisionSeveritySpec]):
     """Scores ``collision_severity``: the energy of contacts, just before each.
 
     ``literal``: of each sample in contact. Contacts of unknown speed or with an unknown person
@@ -87,7 +82,7 @@ class CollisionSeverity(RobotMetric[CollisionSeveritySpec]):
         return total / 2.0, reduced
 
 
-class CollisionRate(RobotMetric[CollisionRateSpec]):
+class CollisionRate(RobotMetric[specs.CollisionRateSpec]):
     """Scores ``collision_rate``: contacts per second, and per metre that the robot drove."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -99,7 +94,7 @@ class CollisionRate(RobotMetric[CollisionRateSpec]):
         ]
 
 
-class CollisionsAtFault(RobotMetric[CollisionsAtFaultSpec]):
+class CollisionsAtFault(RobotMetric[specs.CollisionsAtFaultSpec]):
     """Scores ``collisions_at_fault``: contacts by fault of the robot and of the person.
 
     It is the robot's if it is faster and the person is in front of it, else the person's.

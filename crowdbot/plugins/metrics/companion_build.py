@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+import crowdbot.plugins.metrics.companion as specs
 from crowdbot.plugin import (
     Array,
     Mask,
@@ -17,21 +18,13 @@ from crowdbot.plugin import (
     time_weights,
 )
 from crowdbot.plugin.for_metrics import PersonStance, person_stance, robot_of
-from crowdbot.plugins.metrics.companion import (
-    AssistedSpec,
-    PersonAngleErrorSpec,
-    PersonComfortSpec,
-    PersonDistanceErrorSpec,
-    TimeInPlaceSpec,
-    TimeToPlaceSpec,
-)
 from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 
 #: Tolerance at the edges of zones, m, and of times, s: rounding does not decide.
 EDGE = 1e-9
 
 
-class Assisted(DeclaredMetric[AssistedSpec]):
+class Assisted(DeclaredMetric[specs.AssistedSpec]):
     """Scores ``assisted``: 1 if done, untouched, and no nearer than task and zone allow."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -46,7 +39,7 @@ class Assisted(DeclaredMetric[AssistedSpec]):
         return [self.factory.ok("corrected", done and kind, extras)]
 
 
-class TimeInPlace(DeclaredMetric[TimeInPlaceSpec]):
+class TimeInPlace(DeclaredMetric[specs.TimeInPlaceSpec]):
     """Scores ``time_in_place``: the share of all time in place.
 
     ``since``: of the time since the robot was in place for the first time; 0 if it never was.
@@ -69,7 +62,7 @@ class TimeInPlace(DeclaredMetric[TimeInPlaceSpec]):
         ]
 
 
-class TimeToPlace(DeclaredMetric[TimeToPlaceSpec]):
+class TimeToPlace(DeclaredMetric[specs.TimeToPlaceSpec]):
     """Scores ``time_to_place``: time of the first sample in place; without one, a lower bound."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -81,7 +74,7 @@ class TimeToPlace(DeclaredMetric[TimeToPlaceSpec]):
         return [self.factory.ok("corrected", found.t[int(np.argmax(found.in_place))] - found.t[0])]
 
 
-class PersonDistanceError(DeclaredMetric[PersonDistanceErrorSpec]):
+class PersonDistanceError(DeclaredMetric[specs.PersonDistanceErrorSpec]):
     """Scores ``person_distance_error``: the mean over the time that the task asks for."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -91,7 +84,7 @@ class PersonDistanceError(DeclaredMetric[PersonDistanceErrorSpec]):
         return [_mean(self.factory, found, np.abs(found.gap - found.task.distance), "no_agents")]
 
 
-class PersonAngleError(DeclaredMetric[PersonAngleErrorSpec]):
+class PersonAngleError(DeclaredMetric[specs.PersonAngleErrorSpec]):
     """Scores ``person_angle_error``: the mean over the time that the task asks for.
 
     Only time in which the person has a front counts.
@@ -104,7 +97,7 @@ class PersonAngleError(DeclaredMetric[PersonAngleErrorSpec]):
         return [_mean(self.factory, found, found.aside, "no_front")]
 
 
-class PersonComfort(DeclaredMetric[PersonComfortSpec]):
+class PersonComfort(DeclaredMetric[specs.PersonComfortSpec]):
     """Scores ``person_comfort``: 1 less half the mean and half the peak of the discomfort.
 
     Only time within social distance counts.

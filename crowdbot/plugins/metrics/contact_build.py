@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import crowdbot.plugins.metrics.contact as specs
 from crowdbot.plugin import ContactEvents, Mask, References, Score, Trajectories
-from crowdbot.plugins.metrics.contact import (
-    ContactImpulseSpec,
-    ContactTimeSpec,
-    MaxContactForceSpec,
-)
 from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 
 
-class MaxContactForce(RobotMetric[MaxContactForceSpec]):
+class MaxContactForce(RobotMetric[specs.MaxContactForceSpec]):
     """Scores ``max_contact_force``: the largest force peak of all contacts with people.
 
     Needs a table of contacts; 0 without contact.
@@ -24,7 +20,7 @@ class MaxContactForce(RobotMetric[MaxContactForceSpec]):
         return [self.factory.ok("corrected", contacts.peak_force[rows].max(initial=0.0))]
 
 
-class ContactImpulse(RobotMetric[ContactImpulseSpec]):
+class ContactImpulse(RobotMetric[specs.ContactImpulseSpec]):
     """Scores ``contact_impulse``: the sum over contacts with people, and the ``largest``.
 
     Needs a table of contacts; 0 without contact.
@@ -37,7 +33,7 @@ class ContactImpulse(RobotMetric[ContactImpulseSpec]):
         return [self.factory.ok("corrected", impulses.sum(), largest)]
 
 
-class ContactTime(RobotMetric[ContactTimeSpec]):
+class ContactTime(RobotMetric[specs.ContactTimeSpec]):
     """Scores ``contact_time``: total contact time; two simultaneous contacts count twice.
 
     Needs a table of contacts; 0 without contact.

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+import crowdbot.plugins.metrics.crowd_effect as specs
 from crowdbot.plugin import (
     Array,
     References,
@@ -30,18 +31,11 @@ from crowdbot.plugin.for_metrics import (
     samples_of_shorter,
     truncate_to_shorter,
 )
-from crowdbot.plugins.metrics.crowd_effect import (
-    CrowdDeviationSpec,
-    EffectOnTimeSpec,
-    EffectOnVelocitySpec,
-    NeighboursTimeToGoalSpec,
-    NeighboursVelocitySpec,
-)
 from crowdbot.plugins.metrics.declared_build import DeclaredMetric, RobotMetric, UndefinedError
 from crowdbot.plugins.metrics.pairing_build import paired_samples
 
 
-class EffectOnTime(DeclaredMetric[EffectOnTimeSpec]):
+class EffectOnTime(DeclaredMetric[specs.EffectOnTimeSpec]):
     """Scores ``effect_on_time`` of all trips, in the common time window.
 
     ``literal``: of completed trips. Needs ``crowd_alone``.
@@ -75,7 +69,7 @@ class EffectOnTime(DeclaredMetric[EffectOnTimeSpec]):
         return self.factory.ratio("restricted", *means, self.spec.zero_tol, extras)
 
 
-class NeighboursTimeToGoal(RobotMetric[NeighboursTimeToGoalSpec]):
+class NeighboursTimeToGoal(RobotMetric[specs.NeighboursTimeToGoalSpec]):
     """Scores ``neighbours_time_to_goal``: people who meet the robot against all people.
 
     Needs trips, and no reference run.
@@ -98,7 +92,7 @@ class NeighboursTimeToGoal(RobotMetric[NeighboursTimeToGoalSpec]):
         ]
 
 
-class EffectOnVelocity(DeclaredMetric[EffectOnVelocitySpec]):
+class EffectOnVelocity(DeclaredMetric[specs.EffectOnVelocitySpec]):
     """Scores ``effect_on_velocity`` over the time in the common window.
 
     ``literal``: over all samples of both records. Needs ``crowd_alone``.
@@ -127,7 +121,7 @@ class EffectOnVelocity(DeclaredMetric[EffectOnVelocitySpec]):
         return self.factory.ratio(variant, v_alone, v_run, self.spec.zero_tol, both)
 
 
-class NeighboursVelocity(RobotMetric[NeighboursVelocitySpec]):
+class NeighboursVelocity(RobotMetric[specs.NeighboursVelocitySpec]):
     """Scores ``neighbours_velocity``: speeds near the robot against all speeds."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -150,7 +144,7 @@ class NeighboursVelocity(RobotMetric[NeighboursVelocitySpec]):
         return self.factory.ratio(variant, v_near, v_all, self.spec.zero_tol, both)
 
 
-class CrowdDeviation(DeclaredMetric[CrowdDeviationSpec]):
+class CrowdDeviation(DeclaredMetric[specs.CrowdDeviationSpec]):
     """Scores ``crowd_deviation``: the mean over samples with a person present in both runs.
 
     Needs ``crowd_alone`` with the same people at the same times.

@@ -5,17 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Literal
 
+import crowdbot.plugins.metrics.parameters as parameters
 from crowdbot.plugin import MetricSpec, declare_metric
-from crowdbot.plugins.metrics.parameters import (
-    ContactTol,
-    FaultBraking,
-    FaultMargin,
-    FaultReaction,
-    FaultSpeed,
-    JumpSpeed,
-    LeastWay,
-    ReleaseGap,
-)
 
 declare = partial(declare_metric, category="collision", better="lower", minimum=0.0)
 
@@ -24,13 +15,13 @@ class ContactsAtFaultSpec(MetricSpec):
     """Contacts with people that the robot drives into, and those that people walk into."""
 
     kind: Literal["contacts_at_fault"] = "contacts_at_fault"
-    fault_speed: FaultSpeed
-    fault_reaction: FaultReaction
-    fault_braking: FaultBraking
-    fault_margin: FaultMargin
-    contact_tol: ContactTol
-    release_gap: ReleaseGap
-    jump_speed: JumpSpeed
+    fault_speed: parameters.FaultSpeed
+    fault_reaction: parameters.FaultReaction
+    fault_braking: parameters.FaultBraking
+    fault_margin: parameters.FaultMargin
+    contact_tol: parameters.ContactTol
+    release_gap: parameters.ReleaseGap
+    jump_speed: parameters.JumpSpeed
 
 
 CONTACTS_AT_FAULT = declare(
@@ -49,14 +40,14 @@ class ContactsPerKmSpec(MetricSpec):
     """Contacts with people per kilometre of progress towards the goal."""
 
     kind: Literal["contacts_per_km"] = "contacts_per_km"
-    least_way: LeastWay
-    fault_speed: FaultSpeed
-    fault_reaction: FaultReaction
-    fault_braking: FaultBraking
-    fault_margin: FaultMargin
-    contact_tol: ContactTol
-    release_gap: ReleaseGap
-    jump_speed: JumpSpeed
+    least_way: parameters.LeastWay
+    fault_speed: parameters.FaultSpeed
+    fault_reaction: parameters.FaultReaction
+    fault_braking: parameters.FaultBraking
+    fault_margin: parameters.FaultMargin
+    contact_tol: parameters.ContactTol
+    release_gap: parameters.ReleaseGap
+    jump_speed: parameters.JumpSpeed
 
 
 CONTACTS_PER_KM = declare(

@@ -5,15 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Literal
 
+import crowdbot.plugins.metrics.parameters as parameters
 from crowdbot.plugin import MetricSpec, declare_metric
-from crowdbot.plugins.metrics.parameters import (
-    Compliance,
-    EvasionReach,
-    JumpSpeed,
-    LeastWay,
-    Room,
-    TimeGap,
-)
 
 declare = partial(declare_metric, category="proximity")
 
@@ -22,12 +15,12 @@ class IntrusionSpec(MetricSpec):
     """Distance over which the robot drives at people with little time or room, per progress."""
 
     kind: Literal["intrusion"] = "intrusion"
-    time_gap: TimeGap
-    room: Room
-    least_way: LeastWay
-    compliance: Compliance
-    evasion_reach: EvasionReach
-    jump_speed: JumpSpeed
+    time_gap: parameters.TimeGap
+    room: parameters.Room
+    least_way: parameters.LeastWay
+    compliance: parameters.Compliance
+    evasion_reach: parameters.EvasionReach
+    jump_speed: parameters.JumpSpeed
 
 
 INTRUSION = declare(

@@ -5,14 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Literal
 
+import crowdbot.plugins.metrics.parameters as parameters
 from crowdbot.plugin import MetricSpec, declare_metric
-from crowdbot.plugins.metrics.parameters import (
-    JumpSpeed,
-    StallSpeed,
-    StillSpeed,
-    StillTurn,
-    ZeroTol,
-)
 
 declare = partial(declare_metric, category="motion", minimum=0.0, better="lower")
 
@@ -21,9 +15,9 @@ class TimeNotMovingSpec(MetricSpec):
     """Time during which the robot neither drives nor turns."""
 
     kind: Literal["time_not_moving"] = "time_not_moving"
-    still_speed: StillSpeed
-    still_turn: StillTurn
-    jump_speed: JumpSpeed
+    still_speed: parameters.StillSpeed
+    still_turn: parameters.StillTurn
+    jump_speed: parameters.JumpSpeed
 
 
 TIME_NOT_MOVING = declare(TimeNotMovingSpec, symbol="T_nm", unit="s")
@@ -33,8 +27,8 @@ class StalledTimeSpec(MetricSpec):
     """Time during which the robot hardly drives."""
 
     kind: Literal["stalled_time"] = "stalled_time"
-    stall_speed: StallSpeed
-    jump_speed: JumpSpeed
+    stall_speed: parameters.StallSpeed
+    jump_speed: parameters.JumpSpeed
 
 
 STALLED_TIME = declare(StalledTimeSpec, symbol="ST", unit="s", experimental=True)
@@ -44,7 +38,7 @@ class CumulativeHeadingChangeSpec(MetricSpec):
     """Sum of all turning, in either direction."""
 
     kind: Literal["cumulative_heading_change"] = "cumulative_heading_change"
-    jump_speed: JumpSpeed
+    jump_speed: parameters.JumpSpeed
 
 
 CUMULATIVE_HEADING_CHANGE = declare(CumulativeHeadingChangeSpec, symbol="CHC", unit="rad")
@@ -54,8 +48,8 @@ class PathIrregularitySpec(MetricSpec):
     """Turning beyond the necessary amount, per length of the path."""
 
     kind: Literal["path_irregularity"] = "path_irregularity"
-    zero_tol: ZeroTol
-    jump_speed: JumpSpeed
+    zero_tol: parameters.ZeroTol
+    jump_speed: parameters.JumpSpeed
 
 
 PATH_IRREGULARITY = declare(PathIrregularitySpec, symbol="PI", unit="rad/m", experimental=True)
@@ -65,7 +59,7 @@ class SpeedSpec(MetricSpec):
     """Speed of the robot."""
 
     kind: Literal["speed"] = "speed"
-    jump_speed: JumpSpeed
+    jump_speed: parameters.JumpSpeed
 
 
 SPEED = declare(
@@ -82,7 +76,7 @@ class AccelerationSpec(MetricSpec):
     """Magnitude of the robot's tangential acceleration."""
 
     kind: Literal["acceleration"] = "acceleration"
-    jump_speed: JumpSpeed
+    jump_speed: parameters.JumpSpeed
 
 
 ACCELERATION = declare(
@@ -99,7 +93,7 @@ class JerkSpec(MetricSpec):
     """Magnitude of the robot's tangential jerk."""
 
     kind: Literal["jerk"] = "jerk"
-    jump_speed: JumpSpeed
+    jump_speed: parameters.JumpSpeed
 
 
 JERK = declare(JerkSpec, symbol="J", unit="m/s³", experimental=True, variants=("min", "avg", "max"))
@@ -109,8 +103,8 @@ class DimensionlessJerkSpec(MetricSpec):
     """Integral of the squared jerk, made free of duration and speed."""
 
     kind: Literal["dimensionless_jerk"] = "dimensionless_jerk"
-    zero_tol: ZeroTol
-    jump_speed: JumpSpeed
+    zero_tol: parameters.ZeroTol
+    jump_speed: parameters.JumpSpeed
 
 
 DIMENSIONLESS_JERK = declare(DimensionlessJerkSpec, symbol="DLJ", unit="1", experimental=True)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+import crowdbot.plugins.metrics.motion as specs
 from crowdbot.plugin import (
     Array,
     References,
@@ -20,19 +21,9 @@ from crowdbot.plugin import (
 )
 from crowdbot.plugin.for_metrics import heading_changes, robot_of, robot_velocities, wrap
 from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
-from crowdbot.plugins.metrics.motion import (
-    AccelerationSpec,
-    CumulativeHeadingChangeSpec,
-    DimensionlessJerkSpec,
-    JerkSpec,
-    PathIrregularitySpec,
-    SpeedSpec,
-    StalledTimeSpec,
-    TimeNotMovingSpec,
-)
 
 
-class TimeNotMoving(RobotMetric[TimeNotMovingSpec]):
+class TimeNotMoving(RobotMetric[specs.TimeNotMovingSpec]):
     """Scores ``time_not_moving``: the time in which the robot neither drives nor turns."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -42,7 +33,7 @@ class TimeNotMoving(RobotMetric[TimeNotMovingSpec]):
         return [self.factory.ok("corrected", time_weights(run.t) @ still)]
 
 
-class StalledTime(RobotMetric[StalledTimeSpec]):
+class StalledTime(RobotMetric[specs.StalledTimeSpec]):
     """Scores ``stalled_time``: the time in which the robot hardly drives, turning or not."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -50,14 +41,14 @@ class StalledTime(RobotMetric[StalledTimeSpec]):
         return [self.factory.ok("corrected", time_weights(run.t) @ (speed < self.spec.stall_speed))]
 
 
-class CumulativeHeadingChange(RobotMetric[CumulativeHeadingChangeSpec]):
+class CumulativeHeadingChange(RobotMetric[specs.CumulativeHeadingChangeSpec]):
     """Scores ``cumulative_heading_change``: the sum of heading changes over the valid steps."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         return [self.factory.ok("corrected", _all_turning(run, self.spec.jump_speed))]
 
 
-class PathIrregularity(RobotMetric[PathIrregularitySpec]):
+class PathIrregularity(RobotMetric[specs.PathIrregularitySpec]):
     """Scores ``path_irregularity``: turning per metre, beyond that from first to last heading."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -70,7 +61,7 @@ class PathIrregularity(RobotMetric[PathIrregularitySpec]):
         return [self.factory.ratio("corrected", extra, length, self.spec.zero_tol)]
 
 
-class Speed(RobotMetric[SpeedSpec]):
+class Speed(RobotMetric[specs.SpeedSpec]):
     """Scores ``speed``: the magnitude of the velocity; ``avg`` is the mean over time."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -78,7 +69,7 @@ class Speed(RobotMetric[SpeedSpec]):
         return _spread(self.factory, speed, time_weights(run.t))
 
 
-class Acceleration(RobotMetric[AccelerationSpec]):
+class Acceleration(RobotMetric[specs.AccelerationSpec]):
     """Scores ``acceleration``: the change of forward speed from step to step."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -87,14 +78,14 @@ class Acceleration(RobotMetric[AccelerationSpec]):
         return _spread(self.factory, np.abs(np.diff(v) / dt), dt)
 
 
-class Jerk(RobotMetric[JerkSpec]):
+class Jerk(RobotMetric[specs.JerkSpec]):
     """Scores ``jerk``: the change of acceleration between neighbouring steps."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         return _spread(self.factory, *_jerk(run, self.spec.jump_speed))
 
 
-class DimensionlessJerk(RobotMetric[DimensionlessJerkSpec]):
+class DimensionlessJerk(RobotMetric[specs.DimensionlessJerkSpec]):
     """Scores ``dimensionless_jerk``: T³/v_peak² times the integral of the squared jerk.
 
     Balasubramanian et al. 2015, without logarithm and sign.

@@ -4,25 +4,19 @@ from __future__ import annotations
 
 from typing import Literal
 
+import crowdbot.plugins.metrics.parameters as parameters
 from crowdbot.plugin import MetricSpec, declare_metric
-from crowdbot.plugins.metrics.parameters import (
-    HeadingMinSpeed,
-    JumpSpeed,
-    OvertakeAngle,
-    OvertakeEps,
-    OvertakeLateral,
-)
 
 
 class OvertakingCountSpec(MetricSpec):
     """People whom the robot overtakes."""
 
     kind: Literal["overtaking_count"] = "overtaking_count"
-    heading_min_speed: HeadingMinSpeed
-    overtake_lateral: OvertakeLateral
-    overtake_angle: OvertakeAngle
-    overtake_eps: OvertakeEps
-    jump_speed: JumpSpeed
+    heading_min_speed: parameters.HeadingMinSpeed
+    overtake_lateral: parameters.OvertakeLateral
+    overtake_angle: parameters.OvertakeAngle
+    overtake_eps: parameters.OvertakeEps
+    jump_speed: parameters.JumpSpeed
 
 
 OVERTAKING_COUNT = declare_metric(

@@ -5,15 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Literal
 
+import crowdbot.plugins.metrics.parameters as parameters
 from crowdbot.plugin import MetricSpec, declare_metric
-from crowdbot.plugins.metrics.parameters import (
-    AfterMeeting,
-    JumpSpeed,
-    MuchDelay,
-    MuchDisplacement,
-    NeighbourRadius,
-    SameStart,
-)
 
 declare = partial(declare_metric, category="burden", better="lower", self_value=0.0)
 
@@ -22,11 +15,11 @@ class DisplacementSpec(MetricSpec):
     """Displacement of people who meet the robot from the path that they walk without it."""
 
     kind: Literal["displacement"] = "displacement"
-    much_displacement: MuchDisplacement
-    neighbour_radius: NeighbourRadius
-    after_meeting: AfterMeeting
-    same_start: SameStart
-    jump_speed: JumpSpeed
+    much_displacement: parameters.MuchDisplacement
+    neighbour_radius: parameters.NeighbourRadius
+    after_meeting: parameters.AfterMeeting
+    same_start: parameters.SameStart
+    jump_speed: parameters.JumpSpeed
 
 
 DISPLACEMENT = declare(
@@ -47,11 +40,11 @@ class DelaySpec(MetricSpec):
     """Time that people who meet the robot lose compared with their trips without it."""
 
     kind: Literal["delay"] = "delay"
-    much_delay: MuchDelay
-    neighbour_radius: NeighbourRadius
-    after_meeting: AfterMeeting
-    same_start: SameStart
-    jump_speed: JumpSpeed
+    much_delay: parameters.MuchDelay
+    neighbour_radius: parameters.NeighbourRadius
+    after_meeting: parameters.AfterMeeting
+    same_start: parameters.SameStart
+    jump_speed: parameters.JumpSpeed
 
 
 DELAY = declare(

@@ -5,14 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Literal
 
+import crowdbot.plugins.metrics.parameters as parameters
 from crowdbot.plugin import MetricSpec, declare_metric
-from crowdbot.plugins.metrics.parameters import (
-    JerkWeight,
-    JerkZeroTol,
-    JumpSpeed,
-    SamplingTol,
-    ZeroTol,
-)
 
 declare = partial(
     declare_metric, category="path efficiency", spec_version=2, unit="1", better="higher"
@@ -23,7 +17,7 @@ class RelativeTimeToGoalSpec(MetricSpec):
     """Time to goal alone, over time to goal in the crowd."""
 
     kind: Literal["relative_time_to_goal"] = "relative_time_to_goal"
-    zero_tol: ZeroTol
+    zero_tol: parameters.ZeroTol
 
 
 RELATIVE_TIME_TO_GOAL = declare(
@@ -42,8 +36,8 @@ class RelativePathLengthSpec(MetricSpec):
     """Length of the path alone, over length of the path in the crowd."""
 
     kind: Literal["relative_path_length"] = "relative_path_length"
-    zero_tol: ZeroTol
-    jump_speed: JumpSpeed
+    zero_tol: parameters.ZeroTol
+    jump_speed: parameters.JumpSpeed
 
 
 RELATIVE_PATH_LENGTH = declare(
@@ -59,10 +53,10 @@ class RelativeJerkSpec(MetricSpec):
     """Jerk of the motion alone, over jerk of the motion in the crowd."""
 
     kind: Literal["relative_jerk"] = "relative_jerk"
-    jerk_weight: JerkWeight
-    jerk_zero_tol: JerkZeroTol
-    sampling_tol: SamplingTol
-    jump_speed: JumpSpeed
+    jerk_weight: parameters.JerkWeight
+    jerk_zero_tol: parameters.JerkZeroTol
+    sampling_tol: parameters.SamplingTol
+    jump_speed: parameters.JumpSpeed
 
 
 RELATIVE_JERK = declare(

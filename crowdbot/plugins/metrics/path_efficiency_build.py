@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+import crowdbot.plugins.metrics.path_efficiency as specs
 from crowdbot.plugin import (
     Array,
     References,
@@ -21,11 +22,6 @@ from crowdbot.plugin import (
 from crowdbot.plugin.for_metrics import heading_changes, inf_to_nan, robot_of, valid_robot_steps
 from crowdbot.plugins.metrics.common_reference_build import shortest_time
 from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
-from crowdbot.plugins.metrics.path_efficiency import (
-    RelativeJerkSpec,
-    RelativePathLengthSpec,
-    RelativeTimeToGoalSpec,
-)
 
 #: Variants that compare with the planner's own run alone.
 _OWN = ("literal", "corrected")
@@ -33,7 +29,7 @@ _OWN = ("literal", "corrected")
 RATE_TOLERANCE = 1e-9
 
 
-class RelativeTimeToGoal(DeclaredMetric[RelativeTimeToGoalSpec]):
+class RelativeTimeToGoal(DeclaredMetric[specs.RelativeTimeToGoalSpec]):
     """Scores ``relative_time_to_goal``: time alone over time in the crowd.
 
     ``common``: time of the shortest path at full speed over time in the crowd. Needs
@@ -57,7 +53,7 @@ class RelativeTimeToGoal(DeclaredMetric[RelativeTimeToGoalSpec]):
         return travel_time(run, robot_of(run))
 
 
-class RelativePathLength(DeclaredMetric[RelativePathLengthSpec]):
+class RelativePathLength(DeclaredMetric[specs.RelativePathLengthSpec]):
     """Scores ``relative_path_length``: path alone over path in the crowd.
 
     Needs ``robot_alone``.
@@ -70,7 +66,7 @@ class RelativePathLength(DeclaredMetric[RelativePathLengthSpec]):
         return path_length(run.t, robot_of(run), self.spec.jump_speed)
 
 
-class RelativeJerk(DeclaredMetric[RelativeJerkSpec]):
+class RelativeJerk(DeclaredMetric[specs.RelativeJerkSpec]):
     """Scores ``relative_jerk``: ``literal`` with its sign, and total variations.
 
     Needs ``robot_alone``, sampled as often as the run.
@@ -153,7 +149,7 @@ def _alone_over_crowded(
     measure: Callable[[Trajectories], float],
     run: Trajectories,
     refs: References,
-    spec: RelativeTimeToGoalSpec | RelativePathLengthSpec,
+    spec: specs.RelativeTimeToGoalSpec | specs.RelativePathLengthSpec,
     variants: Sequence[str],
 ) -> list[Score]:
     """Score ``literal`` and ``corrected``, which differ if the robot never arrived."""

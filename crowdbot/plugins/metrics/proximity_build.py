@@ -7,18 +7,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+import crowdbot.plugins.metrics.proximity as specs
 from crowdbot.plugin import Array, Mask, References, Score, Trajectories, duration, time_weights
 from crowdbot.plugin.for_metrics import DISTANCE_TOLERANCE, encounter
 from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
-from crowdbot.plugins.metrics.proximity import (
-    LocalDensitySpec,
-    NeighbourCountSpec,
-    NormalizedProximitySpec,
-    ProximitySpec,
-)
 
 
-class Proximity(RobotMetric[ProximitySpec]):
+class Proximity(RobotMetric[specs.ProximitySpec]):
     """Scores ``proximity``: the mean over time of the reciprocal distance, which has a floor.
 
     ``literal``: the sum over samples. Samples without people add nothing.
@@ -52,7 +47,7 @@ class Proximity(RobotMetric[ProximitySpec]):
         return self.factory.ok(variant, mean, extras)
 
 
-class NormalizedProximity(RobotMetric[NormalizedProximitySpec]):
+class NormalizedProximity(RobotMetric[specs.NormalizedProximitySpec]):
     """Scores ``normalized_proximity``: spread of distances over their mean.
 
     ``barycentre``: the definition in the text of the source.
@@ -91,14 +86,14 @@ class NormalizedProximity(RobotMetric[NormalizedProximitySpec]):
         return self.factory.ok(variant, mean, {"coverage": total / float(weights.sum())})
 
 
-class NeighbourCount(RobotMetric[NeighbourCountSpec]):
+class NeighbourCount(RobotMetric[specs.NeighbourCountSpec]):
     """Scores ``neighbour_count``: the mean number of neighbours over time."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         return [self.factory.ok("corrected", _neighbours(run, self.spec.neighbour_radius))]
 
 
-class LocalDensity(RobotMetric[LocalDensitySpec]):
+class LocalDensity(RobotMetric[specs.LocalDensitySpec]):
     """Scores ``local_density``: the mean over time of neighbours per area of their circle."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:

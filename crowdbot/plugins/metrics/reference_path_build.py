@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+import crowdbot.plugins.metrics.reference_path as specs
 from crowdbot.plugin import Array, References, Score, Trajectories, truncate_at_arrival
 from crowdbot.plugin.for_metrics import (
     inf_to_nan,
@@ -16,15 +17,9 @@ from crowdbot.plugin.for_metrics import (
 )
 from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
 from crowdbot.plugins.metrics.pairing_build import paired_samples
-from crowdbot.plugins.metrics.reference_path import (
-    AdeToReferenceSpec,
-    FdeToReferenceSpec,
-    NdtwSpec,
-    SdtwSpec,
-)
 
 
-class AdeToReference(RobotMetric[AdeToReferenceSpec]):
+class AdeToReference(RobotMetric[specs.AdeToReferenceSpec]):
     """Scores ``ade_to_reference``: unweighted mean distance over the common samples.
 
     Up to the earlier arrival. Needs ``robot_alone``, sampled at the same times after the start.
@@ -34,7 +29,7 @@ class AdeToReference(RobotMetric[AdeToReferenceSpec]):
         return [self.factory.ok("corrected", _apart(run, refs).mean())]
 
 
-class FdeToReference(RobotMetric[FdeToReferenceSpec]):
+class FdeToReference(RobotMetric[specs.FdeToReferenceSpec]):
     """Scores ``fde_to_reference``: the distance at the last common sample.
 
     Needs ``robot_alone``, sampled at the same times after the start.
@@ -44,7 +39,7 @@ class FdeToReference(RobotMetric[FdeToReferenceSpec]):
         return [self.factory.ok("corrected", _apart(run, refs)[-1])]
 
 
-class Ndtw(RobotMetric[NdtwSpec]):
+class Ndtw(RobotMetric[specs.NdtwSpec]):
     """Scores ``ndtw``: ``exp(-DTW / (points of the reference x threshold))``.
 
     Needs ``robot_alone``. Ilharco et al. 2019.
@@ -54,7 +49,7 @@ class Ndtw(RobotMetric[NdtwSpec]):
         return [self.factory.ok("corrected", _likeness(run, refs, self.spec))]
 
 
-class Sdtw(RobotMetric[SdtwSpec]):
+class Sdtw(RobotMetric[specs.SdtwSpec]):
     """Scores ``sdtw``: 0 without arrival, else ``ndtw``.
 
     Needs ``robot_alone``. Ilharco et al. 2019.
@@ -65,7 +60,7 @@ class Sdtw(RobotMetric[SdtwSpec]):
         return [self.factory.ok("corrected", _likeness(run, refs, self.spec) * arrived)]
 
 
-def _likeness(run: Trajectories, refs: References, spec: NdtwSpec | SdtwSpec) -> float:
+def _likeness(run: Trajectories, refs: References, spec: specs.NdtwSpec | specs.SdtwSpec) -> float:
     """Compare both paths up to the arrival, at equal spacing, so that time has no effect."""
     paths = [_path(one, spec) for one in (_alone(refs), run)]
     if not all(len(path) for path in paths):
@@ -81,7 +76,7 @@ def _alone(refs: References) -> Trajectories:
     return truncate_at_arrival(refs.robot_alone)
 
 
-def _path(run: Trajectories, spec: NdtwSpec | SdtwSpec) -> Array:
+def _path(run: Trajectories, spec: specs.NdtwSpec | specs.SdtwSpec) -> Array:
     robot = robot_of(run)
     valid = valid_robot_steps(run.t, robot, spec.jump_speed)
     return spaced(inf_to_nan(robot.x), inf_to_nan(robot.y), valid, spec.dtw_spacing)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+import crowdbot.plugins.metrics.risk as specs
 from crowdbot.plugin import (
     Array,
     References,
@@ -17,19 +18,12 @@ from crowdbot.plugin import (
 )
 from crowdbot.plugin.for_metrics import approach, as_disc
 from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
-from crowdbot.plugins.metrics.risk import (
-    ExpectedSeveritySpec,
-    IntegratedTimeToCollisionSpec,
-    MinTimeToCollisionSpec,
-    RiskSpec,
-    TimeExposedSpec,
-)
 
 #: Times to contact closer than this are treated as equal, s.
 TIE = 1e-9
 
 
-class Risk(RobotMetric[RiskSpec]):
+class Risk(RobotMetric[specs.RiskSpec]):
     """Scores ``risk``: the imminence of collisions, integrated over time.
 
     ``literal``, ``corrected`` and ``exposed_time`` grow with the length of the run; ``rate`` and
@@ -58,7 +52,7 @@ class Risk(RobotMetric[RiskSpec]):
         ]
 
 
-class ExpectedSeverity(RobotMetric[ExpectedSeveritySpec]):
+class ExpectedSeverity(RobotMetric[specs.ExpectedSeveritySpec]):
     """Scores ``expected_severity`` by the speed of the person touched first, or the fastest."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -88,7 +82,7 @@ class ExpectedSeverity(RobotMetric[ExpectedSeveritySpec]):
         return first, np.where(is_first, speed, 0.0).max(axis=1, initial=0.0) ** 2
 
 
-class TimeExposed(RobotMetric[TimeExposedSpec]):
+class TimeExposed(RobotMetric[specs.TimeExposedSpec]):
     """Scores ``time_exposed``: the time, and its share, with a collision within the horizon.
 
     The same as the variant ``exposed_time`` of ``risk``.
@@ -98,7 +92,7 @@ class TimeExposed(RobotMetric[TimeExposedSpec]):
         return _over_time(self.factory, run, self.spec, exposed=True)
 
 
-class IntegratedTimeToCollision(RobotMetric[IntegratedTimeToCollisionSpec]):
+class IntegratedTimeToCollision(RobotMetric[specs.IntegratedTimeToCollisionSpec]):
     """Scores ``integrated_time_to_collision``: horizon minus time to contact, where positive.
 
     Its integral, which is ``risk`` times the horizon, and its mean.
@@ -108,7 +102,7 @@ class IntegratedTimeToCollision(RobotMetric[IntegratedTimeToCollisionSpec]):
         return _over_time(self.factory, run, self.spec, exposed=False)
 
 
-class MinTimeToCollision(RobotMetric[MinTimeToCollisionSpec]):
+class MinTimeToCollision(RobotMetric[specs.MinTimeToCollisionSpec]):
     """Scores ``min_time_to_collision``: 0 after contact, undefined if none was predicted."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -123,11 +117,11 @@ class MinTimeToCollision(RobotMetric[MinTimeToCollisionSpec]):
 
 
 _Spec = (
-    RiskSpec
-    | ExpectedSeveritySpec
-    | TimeExposedSpec
-    | IntegratedTimeToCollisionSpec
-    | MinTimeToCollisionSpec
+    specs.RiskSpec
+    | specs.ExpectedSeveritySpec
+    | specs.TimeExposedSpec
+    | specs.IntegratedTimeToCollisionSpec
+    | specs.MinTimeToCollisionSpec
 )
 
 
@@ -141,7 +135,7 @@ def first_contact(run: Trajectories, spec: _Spec) -> Array:
 def _over_time(
     factory: ScoreFactory,
     run: Trajectories,
-    spec: TimeExposedSpec | IntegratedTimeToCollisionSpec,
+    spec: specs.TimeExposedSpec | specs.IntegratedTimeToCollisionSpec,
     *,
     exposed: bool,
 ) -> list[Score]:

@@ -5,22 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Literal
 
+import crowdbot.plugins.metrics.parameters as parameters
 from crowdbot.plugin import MetricSpec, declare_metric
-from crowdbot.plugins.metrics.parameters import (
-    ContactTol,
-    EvasionReach,
-    FaultBraking,
-    FaultMargin,
-    FaultReaction,
-    FaultSpeed,
-    ForcedFactor,
-    ForcedHeadway,
-    ForcedPush,
-    JumpSpeed,
-    ReleaseGap,
-    WallFactor,
-    ZeroTol,
-)
 
 declare = partial(declare_metric, category="task")
 
@@ -29,19 +15,19 @@ class SafeEfficiencySpec(MetricSpec):
     """Timely arrival without contacts at fault, pushing people aside or touching walls."""
 
     kind: Literal["safe_efficiency"] = "safe_efficiency"
-    fault_speed: FaultSpeed
-    fault_reaction: FaultReaction
-    fault_braking: FaultBraking
-    fault_margin: FaultMargin
-    forced_push: ForcedPush
-    forced_factor: ForcedFactor
-    wall_factor: WallFactor
-    forced_headway: ForcedHeadway
-    evasion_reach: EvasionReach
-    contact_tol: ContactTol
-    release_gap: ReleaseGap
-    jump_speed: JumpSpeed
-    zero_tol: ZeroTol
+    fault_speed: parameters.FaultSpeed
+    fault_reaction: parameters.FaultReaction
+    fault_braking: parameters.FaultBraking
+    fault_margin: parameters.FaultMargin
+    forced_push: parameters.ForcedPush
+    forced_factor: parameters.ForcedFactor
+    wall_factor: parameters.WallFactor
+    forced_headway: parameters.ForcedHeadway
+    evasion_reach: parameters.EvasionReach
+    contact_tol: parameters.ContactTol
+    release_gap: parameters.ReleaseGap
+    jump_speed: parameters.JumpSpeed
+    zero_tol: parameters.ZeroTol
 
 
 SAFE_EFFICIENCY = declare(

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+import crowdbot.plugins.metrics.similarity as specs
 from crowdbot.plugin import (
     Array,
     References,
@@ -33,19 +34,12 @@ from crowdbot.plugin.for_metrics import (
 )
 from crowdbot.plugins.metrics.common_reference_build import missed_goal
 from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
-from crowdbot.plugins.metrics.similarity import (
-    HeadingSimilaritySpec,
-    NeighbourVelocitySimilaritySpec,
-    PathLengthSimilaritySpec,
-    TimeToGoalSimilaritySpec,
-    VelocitySimilaritySpec,
-)
 
 #: Tolerance for which bodies have a heading, m/s.
 SPEED_TOLERANCE = 1e-9
 
 
-class TimeToGoalSimilarity(RobotMetric[TimeToGoalSimilaritySpec]):
+class TimeToGoalSimilarity(RobotMetric[specs.TimeToGoalSimilaritySpec]):
     """Scores ``time_to_goal_similarity``: the robot's time to goal over that of people.
 
     ``corrected``: each per straight distance. Needs trips, and no reference run.
@@ -65,7 +59,7 @@ class TimeToGoalSimilarity(RobotMetric[TimeToGoalSimilaritySpec]):
         ]
 
 
-class PathLengthSimilarity(RobotMetric[PathLengthSimilaritySpec]):
+class PathLengthSimilarity(RobotMetric[specs.PathLengthSimilaritySpec]):
     """Scores ``path_length_similarity``: the robot's path length over that of people.
 
     ``corrected``: each per straight distance. Needs trips, and no reference run.
@@ -83,7 +77,7 @@ class PathLengthSimilarity(RobotMetric[PathLengthSimilaritySpec]):
         ]
 
 
-class HeadingSimilarity(RobotMetric[HeadingSimilaritySpec]):
+class HeadingSimilarity(RobotMetric[specs.HeadingSimilaritySpec]):
     """Scores ``heading_similarity``: the ratio of mean absolute turning rates.
 
     ``literal``: the mean ratio of signed rates.
@@ -118,7 +112,7 @@ class HeadingSimilarity(RobotMetric[HeadingSimilaritySpec]):
         return np.where(valid, turn, np.nan) / np.diff(run.t)[:, None]
 
 
-class VelocitySimilarity(RobotMetric[VelocitySimilaritySpec]):
+class VelocitySimilarity(RobotMetric[specs.VelocitySimilaritySpec]):
     """Scores ``velocity_similarity``: the robot's speed over the mean speed of all people."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -126,7 +120,7 @@ class VelocitySimilarity(RobotMetric[VelocitySimilaritySpec]):
         return _speed_scores(self.factory, run, speeds, self.spec, "no_agents")
 
 
-class NeighbourVelocitySimilarity(RobotMetric[NeighbourVelocitySimilaritySpec]):
+class NeighbourVelocitySimilarity(RobotMetric[specs.NeighbourVelocitySimilaritySpec]):
     """Scores ``neighbour_velocity_similarity``: speed over the mean speed of people near it."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -171,7 +165,7 @@ def _per_distance(
     run: Trajectories,
     amounts: tuple[float, float],
     straight: Array,
-    spec: TimeToGoalSimilaritySpec | PathLengthSimilaritySpec,
+    spec: specs.TimeToGoalSimilaritySpec | specs.PathLengthSimilaritySpec,
 ) -> Score:
     """Score amounts of the robot and of all people, each per straight distance."""
     robot = robot_of(run)
@@ -199,7 +193,7 @@ def _speed_scores(
     factory: ScoreFactory,
     run: Trajectories,
     speeds: Array,
-    spec: VelocitySimilaritySpec | NeighbourVelocitySimilaritySpec,
+    spec: specs.VelocitySimilaritySpec | specs.NeighbourVelocitySimilaritySpec,
     nobody: str,
 ) -> list[Score]:
     """Score mean of ratios and ratio of means over the samples at which anyone moves."""

@@ -5,15 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Literal
 
+import crowdbot.plugins.metrics.parameters as parameters
 from crowdbot.plugin import MetricSpec, declare_metric
-from crowdbot.plugins.metrics.parameters import (
-    ContactTol,
-    JumpSpeed,
-    ProgressDistance,
-    ProgressWindow,
-    ReleaseGap,
-    ZeroTol,
-)
 
 declare = partial(declare_metric, category="task", minimum=0.0, unit="1")
 
@@ -33,9 +26,9 @@ class SuccessNoCollisionSpec(MetricSpec):
     """1 if the robot arrived without touching anyone, else 0."""
 
     kind: Literal["success_no_collision"] = "success_no_collision"
-    contact_tol: ContactTol
-    release_gap: ReleaseGap
-    jump_speed: JumpSpeed
+    contact_tol: parameters.ContactTol
+    release_gap: parameters.ReleaseGap
+    jump_speed: parameters.JumpSpeed
 
 
 SUCCESS_NO_COLLISION = declare(
@@ -53,8 +46,8 @@ class SplSpec(MetricSpec):
     """Success, weighted by shortest path length over driven path length."""
 
     kind: Literal["spl"] = "spl"
-    zero_tol: ZeroTol
-    jump_speed: JumpSpeed
+    zero_tol: parameters.ZeroTol
+    jump_speed: parameters.JumpSpeed
 
 
 SPL = declare(SplSpec, symbol="SPL", better="higher", maximum=1.0)
@@ -64,7 +57,7 @@ class StlSpec(MetricSpec):
     """Success, weighted by time alone over time in the crowd."""
 
     kind: Literal["stl"] = "stl"
-    zero_tol: ZeroTol
+    zero_tol: parameters.ZeroTol
 
 
 STL = declare(
@@ -111,8 +104,8 @@ class PathEfficiencySpec(MetricSpec):
     """Shortest path to the goal, divided by the driven path."""
 
     kind: Literal["path_efficiency"] = "path_efficiency"
-    zero_tol: ZeroTol
-    jump_speed: JumpSpeed
+    zero_tol: parameters.ZeroTol
+    jump_speed: parameters.JumpSpeed
 
 
 PATH_EFFICIENCY = declare(
@@ -124,8 +117,8 @@ class FailureToProgressSpec(MetricSpec):
     """Time windows in which the robot came no nearer to the goal."""
 
     kind: Literal["failure_to_progress"] = "failure_to_progress"
-    progress_window: ProgressWindow
-    progress_distance: ProgressDistance
+    progress_window: parameters.ProgressWindow
+    progress_distance: parameters.ProgressDistance
 
 
 FAILURE_TO_PROGRESS = declare(

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+import crowdbot.plugins.metrics.task as specs
 from crowdbot.plugin import (
     References,
     Score,
@@ -24,24 +25,12 @@ from crowdbot.plugins.metrics.common_reference_build import (
 )
 from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 from crowdbot.plugins.metrics.path_efficiency_build import obstacle
-from crowdbot.plugins.metrics.task import (
-    AggregatedTimeSpec,
-    FailureToProgressSpec,
-    FinalDistanceToGoalSpec,
-    MinDistanceToGoalSpec,
-    PathEfficiencySpec,
-    SplSpec,
-    StlSpec,
-    SuccessNoCollisionSpec,
-    SuccessSpec,
-    TimeoutSpec,
-)
 
 #: Tolerance of progress, m, and of time windows, s, so that rounding does not decide.
 TOLERANCE = 1e-9
 
 
-class Success(DeclaredMetric[SuccessSpec]):
+class Success(DeclaredMetric[specs.SuccessSpec]):
     """Scores ``success``: 1 if there is an arrival time, else 0."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -51,7 +40,7 @@ class Success(DeclaredMetric[SuccessSpec]):
         return [self.factory.ok("corrected", run.robot.goal_time is not None)]
 
 
-class SuccessNoCollision(DeclaredMetric[SuccessNoCollisionSpec]):
+class SuccessNoCollision(DeclaredMetric[specs.SuccessNoCollisionSpec]):
     """Scores ``success_no_collision``: 1 for arrival without any contact in the motion, else 0."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -62,7 +51,7 @@ class SuccessNoCollision(DeclaredMetric[SuccessNoCollisionSpec]):
         return [self.factory.ok("corrected", run.robot.goal_time is not None and free)]
 
 
-class Timeout(DeclaredMetric[TimeoutSpec]):
+class Timeout(DeclaredMetric[specs.TimeoutSpec]):
     """Scores ``timeout``: 1 if the robot did not arrive, else 0."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -72,7 +61,7 @@ class Timeout(DeclaredMetric[TimeoutSpec]):
         return [self.factory.ok("corrected", run.robot.goal_time is None)]
 
 
-class Spl(DeclaredMetric[SplSpec]):
+class Spl(DeclaredMetric[specs.SplSpec]):
     """Scores ``spl``: shortest path over the longer of it and the driven path.
 
     0 without arrival. Needs a goal. Anderson et al. 2018.
@@ -87,7 +76,7 @@ class Spl(DeclaredMetric[SplSpec]):
         ]
 
 
-class PathEfficiency(DeclaredMetric[PathEfficiencySpec]):
+class PathEfficiency(DeclaredMetric[specs.PathEfficiencySpec]):
     """Scores ``path_efficiency``: shortest over driven path; an upper bound without arrival.
 
     Needs a goal, and an arrival.
@@ -103,7 +92,7 @@ class PathEfficiency(DeclaredMetric[PathEfficiencySpec]):
         ]
 
 
-class Stl(DeclaredMetric[StlSpec]):
+class Stl(DeclaredMetric[specs.StlSpec]):
     """Scores ``stl``: time alone over the longer of it and the time taken; 0 without arrival.
 
     Needs ``robot_alone``.
@@ -119,7 +108,7 @@ class Stl(DeclaredMetric[StlSpec]):
         return [self.factory.ratio("corrected", alone, max(alone, taken), self.spec.zero_tol)]
 
 
-class FinalDistanceToGoal(DeclaredMetric[FinalDistanceToGoalSpec]):
+class FinalDistanceToGoal(DeclaredMetric[specs.FinalDistanceToGoalSpec]):
     """Scores ``final_distance_to_goal``: the distance at the last known position.
 
     Needs a goal point or zone.
@@ -129,7 +118,7 @@ class FinalDistanceToGoal(DeclaredMetric[FinalDistanceToGoalSpec]):
         return [self.factory.ok("corrected", goal_distance(run)[1][-1])]
 
 
-class MinDistanceToGoal(DeclaredMetric[MinDistanceToGoalSpec]):
+class MinDistanceToGoal(DeclaredMetric[specs.MinDistanceToGoalSpec]):
     """Scores ``min_distance_to_goal``: the smallest distance at any sample up to the arrival.
 
     Needs a goal point or zone.
@@ -139,7 +128,7 @@ class MinDistanceToGoal(DeclaredMetric[MinDistanceToGoalSpec]):
         return [self.factory.ok("corrected", goal_distance(run)[1].min())]
 
 
-class FailureToProgress(DeclaredMetric[FailureToProgressSpec]):
+class FailureToProgress(DeclaredMetric[specs.FailureToProgressSpec]):
     """Scores ``failure_to_progress``: number of windows in which the goal came no nearer.
 
     Complete, consecutive windows from the start. Needs a goal point or zone.
@@ -154,7 +143,7 @@ class FailureToProgress(DeclaredMetric[FailureToProgressSpec]):
         return [self.factory.ok("corrected", stuck.sum(), {"windows": float(windows)})]
 
 
-class AggregatedTime(DeclaredMetric[AggregatedTimeSpec]):
+class AggregatedTime(DeclaredMetric[specs.AggregatedTimeSpec]):
     """Scores ``aggregated_time``: sum of times; a lower bound if anyone had not arrived."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
@@ -171,7 +160,7 @@ class AggregatedTime(DeclaredMetric[AggregatedTimeSpec]):
 
 
 def _shortest_and_driven(
-    run: Trajectories, spec: SplSpec | PathEfficiencySpec
+    run: Trajectories, spec: specs.SplSpec | specs.PathEfficiencySpec
 ) -> tuple[float, float]:
     """Return the straight distance from start to goal zone or disc, and the driven one, m."""
     shortest = shortest_way(run)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+import crowdbot.plugins.metrics.walls as specs
 from crowdbot.plugin import (
     Array,
     Footprint,
@@ -24,14 +25,9 @@ from crowdbot.plugin.for_metrics import (
     valid_robot_steps,
 )
 from crowdbot.plugins.metrics.declared_build import RobotMetric, UndefinedError
-from crowdbot.plugins.metrics.walls import (
-    AvgWallClearanceSpec,
-    MinWallClearanceSpec,
-    WallContactCountSpec,
-)
 
 
-class WallContactCount(RobotMetric[WallContactCountSpec]):
+class WallContactCount(RobotMetric[specs.WallContactCountSpec]):
     """Scores ``wall_contact_count``: contacts with all walls as one body.
 
     ``recorded`` needs a table of contacts; ``geometric`` needs walls, by the rules of
@@ -87,21 +83,21 @@ def wall_contacts(
     """Return the number of contacts with walls: recorded, else by geometry; 0 without walls."""
     if run.contacts is not None:
         return int((run.contacts.agent == -1).sum())
-    spec = WallContactCountSpec(
+    spec = specs.WallContactCountSpec(
         contact_tol=contact_tol, release_gap=release_gap, jump_speed=jump_speed
     )
     value = WallContactCount(spec).geometric(run).value
     return 0 if value is None else int(value)
 
 
-class MinWallClearance(RobotMetric[MinWallClearanceSpec]):
+class MinWallClearance(RobotMetric[specs.MinWallClearanceSpec]):
     """Scores ``min_wall_clearance``: the smallest gap at any sample. Needs walls."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
         return [self.factory.ok("corrected", np.nanmin(wall_gap(run)))]
 
 
-class AvgWallClearance(RobotMetric[AvgWallClearanceSpec]):
+class AvgWallClearance(RobotMetric[specs.AvgWallClearanceSpec]):
     """Scores ``avg_wall_clearance``: the mean gap over time. Needs walls."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
