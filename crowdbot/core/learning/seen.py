@@ -75,8 +75,8 @@ class StepChange:
         forced: (W,) work, per mass, against people who evade the robot at the last moment, J/kg, as
             in the metric ``safe_efficiency``, where more than 0.25 J/kg against one person halves
             the score.
-        aside: (W,) people driven aside in the step: of each 1 once that is reached, before the
-            square of the share that is, so that an episode's sum is close to the score's number.
+        aside: (W,) people driven aside in the step: each adds, up to 1, the square of the share of
+            the limit that is reached, so that an episode's sum is close to the score's number.
         command, before: (W, 3) v, w, vy of this step and of the one before, m/s and rad/s.
     """
 

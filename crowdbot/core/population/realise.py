@@ -75,7 +75,7 @@ def from_source(scenario: Scenario, parts: EnvironmentParts | None, source: str)
 def _people(
     scenario: Scenario, crowd: Crowd, parts: EnvironmentParts | None, streams: Streams
 ) -> list[Row]:
-    """Return complete rows, without the key of goals; of drawn people with their source."""
+    """Return rows of all people without ``goal_key``; those of drawn people name their source."""
     ground = Ground(parts, crowd)
     occupancy = Occupancy([robot.task.start[:2] for robot in scenario.robots.values()], ground)
     if crowd.names_nobody and crowd.policy.record is not None:
@@ -204,7 +204,7 @@ def _ways(flow: Flow, scenario: Scenario) -> list[Row]:
 
 
 def _look_of(agent: Agent) -> Row:
-    """Return the default body of an explicit agent's look, for missing numbers."""
+    """Return an explicit agent's body: its own numbers, else those that are usual for its look."""
     assert agent.look is not None
     look = USUAL_BODIES[agent.look]
     usual = {"radius": look.radius, "mass": look.mass[0] if look.mass else None}

@@ -147,7 +147,7 @@ class Recording:
 
     @cached_property
     def info(self) -> RecordingInfo:
-        """Summary of the contents of the file, complete or not."""
+        """Return a summary of the contents of the file, complete or not."""
         header, shared = self.header, self._by_prefix[""]
         self._drain()
         end = shared.end

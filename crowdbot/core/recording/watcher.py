@@ -13,7 +13,7 @@ class Watcher(Protocol):
     """Gets the ground truth during the simulation, without affecting the run."""
 
     def begin(self, shared: RecordingHeader, robots: Mapping[str, RecordingHeader]) -> None:
-        """Start of a run.
+        """Called at the start of a run.
 
         Args:
             shared: has walls and people.
@@ -22,7 +22,7 @@ class Watcher(Protocol):
         ...
 
     def sample(self, t: float, robots: Mapping[str, Sequence[float]], agents: Array | None) -> None:
-        """One sample of the ground truth.
+        """Called with each sample of the ground truth.
 
         Args:
             t: time, s.
@@ -39,7 +39,7 @@ class Watcher(Protocol):
         columns: Array,
         texts: Sequence[str] | None = None,
     ) -> None:
-        """A drawing by a robot's planner.
+        """Called with each drawing of a robot's planner.
 
         Args:
             t: time, s.

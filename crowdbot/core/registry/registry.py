@@ -61,7 +61,7 @@ class Registry:
     source: RegistrySource | None = None
 
     def components(self, category: str) -> Mapping[str, Component[Any]]:
-        """Kind -> component, sorted by kind."""
+        """Return kind -> component, sorted by kind."""
         return self._by_category[category]
 
     def find(self, category: str, kind: str) -> Component[Any]:

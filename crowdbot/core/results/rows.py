@@ -26,7 +26,7 @@ class RunRow:
     """One complete run: a view of its record.
 
     Attributes:
-        record: what its ``run.json`` says.
+        record: contents of its ``run.json``.
         directory: of the run, relative to the results' root.
         entry: of a leaderboard: the name that its planner has there.
     """

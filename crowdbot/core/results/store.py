@@ -172,7 +172,7 @@ class Store:
 
     @contextmanager
     def _writing(self) -> Iterator[None]:
-        """Write all or nothing.
+        """Open a transaction: all changes are written, or none.
 
         Raises:
             InputError: the disk is full, or the file cannot be written for another reason.

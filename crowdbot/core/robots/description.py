@@ -190,7 +190,7 @@ class Description:
         return drive.command_radius - float(self.pose(wheel, base)[2, 3])
 
     def _from_root(self, link: str, below: tuple[str, ...]) -> Array:
-        """Pose of a link of a URDF in its root's frame."""
+        """Return the pose (4, 4) of a URDF's link in the frame of its root."""
         self.link(link)
         _check_circle(link, below)
         joint = next((j for j in self.model.findall("joint") if child_of(j) == link), None)
@@ -200,7 +200,7 @@ class Description:
         return self._from_root(parent, (*below, link)) @ matrix(pose_of(joint))
 
     def _in_model(self, link: str, below: tuple[str, ...]) -> Array:
-        """Pose of a link of an SDFormat model in the model's frame."""
+        """Return the pose (4, 4) of an SDFormat model's link in the model's frame."""
         _check_circle(link, below)
         element = self.link(link)
         pose = element.find("pose")

@@ -20,7 +20,7 @@ def at_link(spec: SensorSpec, robot: RobotModel) -> SensorSpec:
 
     Args:
         spec: a sensor; without a link it is returned as it is.
-        robot: carries it.
+        robot: the robot that carries it.
 
     Raises:
         InputError: it has a mount as well, or none, or the link is tilted and the sensor cannot be.

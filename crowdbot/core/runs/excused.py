@@ -20,7 +20,7 @@ def excuse_of(
 
     Args:
         outcome: how it ended.
-        runs: of its robots, to the end.
+        runs: runs of its robots, to the end.
         realisation: hash of its people.
         draw: number of the draw, 0 for the scenario's own.
     """

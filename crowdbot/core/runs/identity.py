@@ -266,7 +266,7 @@ def reusable_record(request: Request, run_id: str, *, compared: bool) -> RunReco
 
 
 def _holds(record: RunRecord, request: Request) -> bool:
-    """True if as much was recorded as is wanted, or more."""
+    """Return True if a run recorded at least as much as is requested."""
     levels = get_args(Recorded)
     return record.recorded in levels[: levels.index(request.options.record) + 1]
 

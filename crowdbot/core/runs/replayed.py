@@ -133,10 +133,10 @@ def shown_run(
     """Return the page's data of a run with one or several robots.
 
     Args:
-        scenario: what was run.
+        scenario: the scenario of the run.
         seen, models: of each robot by name, in the scenario's order.
         scores: of the run.
-        images: what cameras saw.
+        images: camera images.
         people: the agents.
     """
     # People are shown until the last robot has ended.
@@ -178,7 +178,7 @@ def shown_run(
 
 
 def _last_first(last: str, names: Iterable[str]) -> list[str]:
-    """Return the robots in the order of the page."""
+    """Return the robots' names in the order of the page: ``last`` comes first."""
     found = list(names)
     return [last, *(n for n in found if n != last)] if last in found else found
 

@@ -44,7 +44,7 @@ class Run:
 
     Attributes:
         directory: where its files are.
-        record: what ``run.json`` says; `RunRecord.document` is the same as plain values.
+        record: contents of ``run.json``; `RunRecord.document` is the same as plain values.
         reused: True if the run had been made before.
         replaced: how an earlier run in the same folder, which this one has replaced, was
             recorded differently; empty if there was none, or it was recorded in the same way.
@@ -153,7 +153,7 @@ class Request:
         seed: seed of sensor noise and planner.
         out: root of the run directories.
         entry: the scenario's place in its suite.
-        options: how.
+        options: options of making the run.
         references_finished: the caller has made the references; those in which the planner failed
             are not tried again.
         progress: called several times a simulated second.

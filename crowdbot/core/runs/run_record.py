@@ -60,7 +60,7 @@ class RunIdentity(RecordPart):
 
 
 class _Record(CostPart):
-    """A record that stands in the directory of its run."""
+    """A record that is stored in the directory of its run."""
 
     run_id: Hash
     files: dict[str, Count] = Field(default_factory=dict)

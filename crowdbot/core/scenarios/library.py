@@ -232,7 +232,7 @@ def pick(expansion: Expansion, pattern: str | None) -> Scenario:
 
 
 def _like(pattern: str, ids: Sequence[str]) -> Sequence[str]:
-    """Return suggestions for a pattern: ids, or their beginnings with as many parts."""
+    """Return suggestions for a pattern: beginnings of ids with as many parts as it has."""
     parts = pattern.count("-") + 1
     return sorted({"-".join(i.split("-")[:parts]) for i in ids})
 

@@ -232,7 +232,7 @@ def _with_crowd(expansion: Expansion) -> Iterator[Scenario]:
 
 
 def _free_name(scenario: Scenario, suite: str, taken: Mapping[str, object]) -> str:
-    """Return the crowd's seed key if it has one; numbered if other inputs use it."""
+    """Return a table's name: the crowd's seed key or the suite, numbered if that is taken."""
     assert scenario.crowd is not None
     key = scenario.crowd.seed.key
     name = key if _NAME.fullmatch(key) else suite

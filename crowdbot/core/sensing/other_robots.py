@@ -51,7 +51,7 @@ class RobotSurfaces:
         return len(self.robots)
 
     def place(self, poses: Sequence[Pose | None]) -> None:
-        """Move the robots to their poses; None: has left."""
+        """Move the robots to their poses; None for a robot that has left."""
         self.poses = tuple(poses)
         plates, discs = self.plates.copy(), self.discs.copy()
         side = disc = 0

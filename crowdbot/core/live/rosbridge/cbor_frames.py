@@ -50,7 +50,7 @@ class _Scan:
         self._data, self._items = data, 0
 
     def value(self, at: int, depth: int, *, key: bool = False) -> int:
-        """Return the position after the value at ``at``."""
+        """Check the value at position ``at``; return the position after it."""
         self._items += 1
         if self._items > _MOST_ITEMS or depth > _MOST_DEPTH:
             raise BadFrame(f"a frame has at most {_MOST_ITEMS} items, {_MOST_DEPTH} deep")

@@ -55,7 +55,7 @@ def enforce(given: Mapping[str, Any], rules: int, scratch: str) -> None:
     Args:
         given: from `contained_request`.
         rules: from `rules_of`, closed here.
-        scratch: the only folder that it may write to. What lies beside it outlives the run.
+        scratch: the only folder that it may write to; it is deleted after the run.
 
     Raises:
         OSError: the kernel refuses what it offers.

@@ -1,4 +1,4 @@
-"""Policies that Stable-Baselines3 has saved: fully connected ones, as of ``MlpPolicy``.
+"""Fully connected policies that Stable-Baselines3 has saved, such as an ``MlpPolicy``.
 
 Their weights are read without executing code of the file, so other networks are refused.
 """

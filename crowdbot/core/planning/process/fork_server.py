@@ -120,7 +120,8 @@ class ForkServer:
         line: connection: requests are length and pickle, with descriptors; replies are one JSON
             document per line.
         folder: folder of the planners' scratch folders.
-        limited: True if signals of this process and of planners stay among them.
+        limited: True if the kernel limits signals of this process and of planners to these
+            processes.
     """
 
     def __init__(self, line: socket.socket, folder: str, *, limited: bool) -> None:

@@ -162,7 +162,7 @@ class PlannerLine:
         self._came += piece
 
     def _whole(self) -> dict[str, Any] | None:
-        """Return the reply once it is complete."""
+        """Return the reply if it is complete, else None."""
         if len(self._came) < _HEAD.size:
             return None
         (size,) = _HEAD.unpack_from(self._came)

@@ -71,7 +71,7 @@ def check_sealed(plan: ProcessPlan) -> None:
 
 
 def _check_containment(plan: ProcessPlan) -> None:
-    """Say, once in a process, that planners are not contained here, or refuse to run one.
+    """Warn once per process that planners are not contained here, or refuse to run one.
 
     Raises:
         InputError: it has to be contained.

@@ -26,9 +26,9 @@ class RobotRealism:
 
     Attributes:
         name: name of the crowd or response.
-        score: similarity to recorded people, and of it `parts` by feature.
-        ceiling, floor: of one half of the recordings to the other; of people who ignore the robot
-            and walk straight on.
+        score: similarity to recorded people; ``parts`` has it by feature.
+        ceiling, floor: similarity of one half of the recordings to the other, and of people who
+            ignore the robot and walk straight on.
         cells: cell -> index, similarity, ceiling and floor.
         statistics: cell -> distributions of these people.
         reference: the recorded people.

@@ -96,7 +96,7 @@ class Records:
         self._zstd = zstandard.ZstdDecompressor()
 
     def __iter__(self) -> Generator[Record, None, None]:
-        """Messages in the order they were written.
+        """Yield messages in the order they were written.
 
         Raises:
             InputError: not an MCAP file, damaged before its end, or unreasonably large when

@@ -102,7 +102,7 @@ def write_parquet(run: Trajectories, out: Path) -> list[str]:
 
 
 def geojson(run: Trajectories) -> str:
-    """Walls, goal zone and the paths of robot and people as lines; metres, not degrees."""
+    """Return walls, goal zone, and paths of robot and people as GeoJSON; metres, not degrees."""
     features = [*_scenery(run), *_ways(run)]
     document = {
         "type": "FeatureCollection",
@@ -142,7 +142,7 @@ def _ways(run: Trajectories) -> Iterator[dict[str, Any]]:
 
 
 def _pieces(x: Array, jumps: Any) -> list[Any]:
-    """Samples of a person who is present, cut at teleports; at least two each."""
+    """Return stretches of at least two samples of a present person, cut at teleports."""
     there = np.isfinite(x)
     cut = np.flatnonzero(~(there[1:] & there[:-1]) | (False if jumps is None else jumps)) + 1
     return [p for p in np.split(np.arange(len(x)), cut) if len(p) > 1 and there[p].all()]

@@ -285,7 +285,7 @@ def _choose(
 
 @inline_kernel
 def _follow(samples: _Samples, k: int, i: int, vx: float, vy: float) -> bool:
-    """Velocities from an acceleration; returns True if they are exact."""
+    """Predict velocities from an acceleration; return True if they are exact."""
     samples.scratch[0] = vx
     _transfer(samples, k, _VX, i)
     samples.scratch[0] = vy

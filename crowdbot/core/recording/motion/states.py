@@ -167,7 +167,7 @@ class SeriesRows:
 
 
 def series(messages: Iterable[Any]) -> dict[str, Array]:
-    """Name -> (P, 2) times and values, of messages of one topic."""
+    """Return name -> (P, 2) times (s) and values, from the messages of one topic."""
     columns: dict[str, tuple[list[float], list[float]]] = {}
     for message in messages:
         times, values = columns.setdefault(message.name, ([], []))

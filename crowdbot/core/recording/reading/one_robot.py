@@ -142,7 +142,7 @@ class RobotRecords:
 
     @property
     def last_sample(self) -> float:
-        """Time of the last sample, s; 0 without any."""
+        """Return the time of the last sample, s; 0 without any."""
         states = self._records[Topic.STATE]
         return states[-1].ns / 1e9 if states else 0.0
 

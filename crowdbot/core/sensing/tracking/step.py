@@ -120,7 +120,7 @@ def _sector(angle: float) -> int:
 def _mark_what_stands(
     points: Array, pose: tuple[float, float, float], t: float, memory: Memory, found: int
 ) -> None:
-    """Mark legs at places where something stands."""
+    """Mark legs that lie on static objects of the map."""
     co, si, legs = math.cos(pose[2]), math.sin(pose[2]), memory.legs
     for j in range(found):
         stands = 0
