@@ -7,17 +7,10 @@ from typing import Annotated
 
 import typer
 
+import crowdbot.cli.shared.options as shared
 from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.campaign_run import run_plan, worker_count
 from crowdbot.cli.shared.option import argument, option, switch
-from crowdbot.cli.shared.options import (
-    MEMORY_GIB,
-    NoPlugins,
-    PlannerMemory,
-    Plugins,
-    installed,
-    planner_place,
-)
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.support.text import plural
 
@@ -31,12 +24,12 @@ def judge(
     not_contained: Annotated[
         bool, switch("--not-contained", "Run planners that this system does not contain.")
     ] = False,
-    planner_memory: PlannerMemory = MEMORY_GIB,
+    planner_memory: shared.PlannerMemory = shared.MEMORY_GIB,
     step_budget: Annotated[
         float | None, option("SECONDS", "Wall time that a planner step may take; default: 10 s.")
     ] = None,
-    plugin: Plugins = None,
-    no_plugins: NoPlugins = False,
+    plugin: shared.Plugins = None,
+    no_plugins: shared.NoPlugins = False,
     as_json: AsJson = False,
 ) -> None:
     """Receive sealed planners, and run them once the suite's draws are open.
@@ -51,12 +44,12 @@ def judge(
     from crowdbot.core.campaign.judge import judge as judge_all
     from crowdbot.core.runs.run_options import RunOptions
 
-    place = planner_place(False, planner_memory, lenient=True, contained=not not_contained)
+    place = shared.planner_place(False, planner_memory, lenient=True, contained=not not_contained)
     setup = Judge(
         suite=suite,
         submissions=submissions,
         out=out,
-        registry=installed(plugin, no_plugins),
+        registry=shared.installed(plugin, no_plugins),
         run=lambda plan: run_plan(plan, worker_count(jobs), cluster),
         options=RunOptions(place=place, replay=False, step_budget=step_budget),
         plugins=plugin or (),

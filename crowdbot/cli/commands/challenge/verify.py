@@ -11,17 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+import crowdbot.cli.shared.options as shared
 from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.option import argument, option, switch
-from crowdbot.cli.shared.options import (
-    MEMORY_GIB,
-    InProcess,
-    NoPlugins,
-    PlannerMemory,
-    Plugins,
-    installed,
-    planner_place,
-)
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.cli.shared.verify_references import outcome_lines, verify_references
 
@@ -80,8 +72,8 @@ def verify(
             min=0, metavar="N", help="Also make N runs with new people, and compare the means."
         ),
     ] = 0,
-    in_process: InProcess = None,
-    planner_memory: PlannerMemory = MEMORY_GIB,
+    in_process: shared.InProcess = None,
+    planner_memory: shared.PlannerMemory = shared.MEMORY_GIB,
     not_contained: Annotated[
         bool,
         switch(
@@ -89,8 +81,8 @@ def verify(
             "Run the planner even if this system cannot keep it from files and processes.",
         ),
     ] = False,
-    plugin: Plugins = None,
-    no_plugins: NoPlugins = False,
+    plugin: shared.Plugins = None,
+    no_plugins: shared.NoPlugins = False,
     as_json: AsJson = False,
 ) -> None:
     """Check a bundle and repeat some of its runs; exit code 1 if anything does not match.
@@ -102,8 +94,8 @@ def verify(
 
     if save:
         sign({})  # fails at once where the key or the library is missing, not after all runs
-    place = planner_place(in_process, planner_memory, contained=not not_contained)
-    registry = installed(plugin, no_plugins)
+    place = shared.planner_place(in_process, planner_memory, contained=not not_contained)
+    registry = shared.installed(plugin, no_plugins)
     size = None if everything else sample
     if (document := verify_references(str(bundle), registry, size, seed)) is not None:
         say(json.dumps(document, indent=2) if as_json else "\n".join(outcome_lines(document)))

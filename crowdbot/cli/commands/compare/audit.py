@@ -10,19 +10,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+import crowdbot.cli.shared.options as shared
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.campaign_run import print_plan, read_seeds, run_plan, worker_count
 from crowdbot.cli.shared.option import option, switch
-from crowdbot.cli.shared.options import (
-    EveryScenarioSet,
-    Jobs,
-    NoPlugins,
-    OnlyScenarios,
-    Plugins,
-    SuiteArgument,
-    installed,
-)
 from crowdbot.errors import InputError
 
 if TYPE_CHECKING:
@@ -36,18 +28,18 @@ _CAREFUL = ("people_mpc",)
 
 
 def audit(
-    suite: SuiteArgument,
+    suite: shared.SuiteArgument,
     scenarios: Annotated[
         int | None,
         typer.Option(
             min=1, metavar="N", help="Only N scenarios, with many different crowds; default: all."
         ),
     ] = None,
-    only: OnlyScenarios = None,
+    only: shared.OnlyScenarios = None,
     seeds: Annotated[str, option("0,1,2|0..4", "Run seeds.")] = "0",
-    overrides: EveryScenarioSet = None,
+    overrides: shared.EveryScenarioSet = None,
     out: Annotated[Path, option("DIR", "Root of the run directories.")] = Path("runs"),
-    jobs: Jobs = 0,
+    jobs: shared.Jobs = 0,
     dry_run: Annotated[bool, switch("--dry-run", "Print the plan only.")] = False,
     adversaries: Annotated[
         bool, switch("--adversaries", "Check that no adversary is ahead of a careful planner.")
@@ -59,8 +51,8 @@ def audit(
             "With --adversaries: a further planner that none may be ahead of; repeatable.",
         ),
     ] = None,
-    plugin: Plugins = None,
-    no_plugins: NoPlugins = False,
+    plugin: shared.Plugins = None,
+    no_plugins: shared.NoPlugins = False,
     as_json: Annotated[bool, switch("--json", "The audit as JSON on stdout.")] = False,
 ) -> None:
     """Check that a suite tells careful planners from blind ones; exit code 1 if it does not.
@@ -73,7 +65,7 @@ def audit(
     from crowdbot.core.campaign.request import CampaignRequest
     from crowdbot.core.runs.run_options import RunOptions
 
-    registry = installed(plugin, no_plugins)
+    registry = shared.installed(plugin, no_plugins)
     if careful and not adversaries:
         raise InputError("--careful names planners to compare adversaries with: add --adversaries")
     named = _careful(registry, careful or ())

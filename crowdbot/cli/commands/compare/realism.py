@@ -8,18 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+import crowdbot.cli.shared.options as shared
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.option import option, switch
-from crowdbot.cli.shared.options import (
-    FrameRate,
-    NoPlugins,
-    OwnRecordings,
-    PixelsToMetres,
-    Plugins,
-    check_ending,
-    installed,
-)
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.runs.run_directory import recordings_under
 from crowdbot.core.support.atomic_write import atomic_write
@@ -46,9 +38,9 @@ def realism(
             "--robot also human or giving_way.",
         ),
     ],
-    reference: OwnRecordings = None,
-    homography: PixelsToMetres = None,
-    frame_rate: FrameRate = None,
+    reference: shared.OwnRecordings = None,
+    homography: shared.PixelsToMetres = None,
+    frame_rate: shared.FrameRate = None,
     robot: Annotated[
         bool, switch("--robot", "Compare how people respond to a robot with people near robots.")
     ] = False,
@@ -66,8 +58,8 @@ def realism(
     out: Annotated[
         Path | None, option("FILE", "File to write, .html: page with the curves.")
     ] = None,
-    plugin: Plugins = None,
-    no_plugins: NoPlugins = False,
+    plugin: shared.Plugins = None,
+    no_plugins: shared.NoPlugins = False,
     as_json: AsJson = False,
 ) -> None:
     """Compare a crowd with recorded people: an index with its parts, ceiling and floor.
@@ -80,9 +72,9 @@ def realism(
     from crowdbot.cli.shared.robot_realism import DRAWS, of_people, robot_realism
     from crowdbot.core.realism.page import render
 
-    check_ending(out, ".html")
+    shared.check_ending(out, ".html")
     scale = of_people(homography, frame_rate, reference, robot=robot)
-    registry = installed(plugin, no_plugins)
+    registry = shared.installed(plugin, no_plugins)
     if robot:
         draws = read_seeds(seeds or f"1..{DRAWS}")
         robot_realism(

@@ -8,19 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+import crowdbot.cli.shared.options as shared
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.option import option, switch
-from crowdbot.cli.shared.options import (
-    FrameRate,
-    Jobs,
-    NoPlugins,
-    OwnRecordings,
-    PixelsToMetres,
-    Plugins,
-    check_ending,
-    installed,
-)
 from crowdbot.cli.shared.run_arguments import AsJson
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import InputError
@@ -44,9 +35,9 @@ def calibrate(
             "response.",
         ),
     ],
-    reference: OwnRecordings = None,
-    homography: PixelsToMetres = None,
-    frame_rate: FrameRate = None,
+    reference: shared.OwnRecordings = None,
+    homography: shared.PixelsToMetres = None,
+    frame_rate: shared.FrameRate = None,
     fit: Annotated[
         list[str] | None,
         option("KEY=LOW..HIGH", "Fit this number, SI units; default: all of them."),
@@ -68,12 +59,12 @@ def calibrate(
     seed: Annotated[
         int, typer.Option(min=1, help="Seed of the fit; equal seeds give equal fits.")
     ] = 1,
-    jobs: Jobs = 0,
+    jobs: shared.Jobs = 0,
     out: Annotated[Path, option("FILE", "File to write, .yaml; its log is beside it.")] = Path(
         "fitted.yaml"
     ),
-    plugin: Plugins = None,
-    no_plugins: NoPlugins = False,
+    plugin: shared.Plugins = None,
+    no_plugins: shared.NoPlugins = False,
     as_json: AsJson = False,
 ) -> None:
     """Fit a crowd to recorded people and write it as a part; resumes an interrupted fit.
@@ -89,8 +80,8 @@ def calibrate(
     from crowdbot.core.realism.near_robots.calibrate import RobotFitTask
     from crowdbot.core.realism.parameters import parameters_of
 
-    check_ending(out, ".yaml", ".yml")
-    registry = installed(plugin, no_plugins)
+    shared.check_ending(out, ".yaml", ".yml")
+    registry = shared.installed(plugin, no_plugins)
     scale = of_people(homography, frame_rate, reference, robot=robot)
     plain: dict[str, Any] = {
         "crowd": str(Path(crowd).resolve()) if Path(crowd).is_file() else crowd,

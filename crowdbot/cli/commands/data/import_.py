@@ -6,16 +6,9 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+import crowdbot.cli.shared.options as shared
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.option import argument, option, switch
-from crowdbot.cli.shared.options import (
-    FrameRate,
-    NoPlugins,
-    PixelsToMetres,
-    Plugins,
-    check_ending,
-    installed,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,10 +27,10 @@ def import_(
     out: Annotated[
         Path | None, option("FILE", "File to write, .yaml; default: NAME.yaml, here.")
     ] = None,
-    homography: PixelsToMetres = None,
-    frame_rate: FrameRate = None,
-    plugin: Plugins = None,
-    no_plugins: NoPlugins = False,
+    homography: shared.PixelsToMetres = None,
+    frame_rate: shared.FrameRate = None,
+    plugin: shared.Plugins = None,
+    no_plugins: shared.NoPlugins = False,
     as_json: Annotated[bool, switch("--json", "The whole report as JSON.")] = False,
 ) -> None:
     """Convert scenes of other simulators to scenarios; report the outcome for each part.
@@ -52,10 +45,10 @@ def import_(
     from crowdbot.core.exchange.importing import import_files
     from crowdbot.core.trajectories.data_sets.homography import video_scale
 
-    check_ending(out, ".yaml", ".yml")
+    shared.check_ending(out, ".yaml", ".yml")
     scale = video_scale(homography, frame_rate)
     target = out or Path(f"{files[0].stem}.yaml")
-    found = import_files(files, target.stem, installed(plugin, no_plugins), scale)
+    found = import_files(files, target.stem, shared.installed(plugin, no_plugins), scale)
     written = write(target, found.lines, found.scenes)
     say(json.dumps(_facts(found, written), indent=2) if as_json else _text(found, written))
 

@@ -7,22 +7,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+import crowdbot.cli.shared.options as shared
 from crowdbot.cli.output.say import say, say_json
 from crowdbot.cli.shared.campaign_run import print_plan, read_seeds, run_plan, worker_count
 from crowdbot.cli.shared.option import argument, option, switch
-from crowdbot.cli.shared.options import (
-    MEMORY_GIB,
-    EveryScenarioSet,
-    InProcess,
-    Jobs,
-    NoPlugins,
-    OnlyScenarios,
-    PlannerMemory,
-    Plugins,
-    ReplaceDraws,
-    installed,
-    planner_place,
-)
 from crowdbot.cli.shared.run_arguments import AsJson, RecordChoice
 
 if TYPE_CHECKING:
@@ -44,13 +32,13 @@ def campaign(
     suites: Annotated[list[str], argument("SUITE...", "Files or names.")],
     planner: _Planner = None,
     seeds: _Seeds = None,
-    only: OnlyScenarios = None,
+    only: shared.OnlyScenarios = None,
     crowds: _Crowds = None,
     out: _Out = Path("runs"),
-    jobs: Jobs = 0,
+    jobs: shared.Jobs = 0,
     record: _Record = RecordChoice.used,
     replay: Annotated[bool, typer.Option(help="Write the replay pages.")] = True,
-    overrides: EveryScenarioSet = None,
+    overrides: shared.EveryScenarioSet = None,
     planner_set: _PlannerSet = None,
     floors: Annotated[
         bool,
@@ -59,16 +47,16 @@ def campaign(
     retry_failed: Annotated[
         bool, switch("--retry-failed", "Repeat runs whose planner failed.")
     ] = False,
-    replace_draws: ReplaceDraws = 0,
+    replace_draws: shared.ReplaceDraws = 0,
     force: Annotated[
         bool, switch("--force", "Run everything again, calibration runs too.")
     ] = False,
     dry_run: Annotated[bool, switch("--dry-run", "Print the plan only.")] = False,
     cluster: Annotated[str | None, option("tcp://HOST:PORT", "A Dask scheduler.")] = None,
-    in_process: InProcess = None,
-    planner_memory: PlannerMemory = MEMORY_GIB,
-    plugin: Plugins = None,
-    no_plugins: NoPlugins = False,
+    in_process: shared.InProcess = None,
+    planner_memory: shared.PlannerMemory = shared.MEMORY_GIB,
+    plugin: shared.Plugins = None,
+    no_plugins: shared.NoPlugins = False,
     as_json: AsJson = False,
 ) -> None:
     """Run every scenario with every planner and seed; completed runs are skipped.
@@ -85,9 +73,9 @@ def campaign(
         retry_failed=retry_failed,
         replace_draws=replace_draws,
         force=force,
-        place=planner_place(in_process, planner_memory, lenient=True),
+        place=shared.planner_place(in_process, planner_memory, lenient=True),
     )
-    registry = installed(plugin, no_plugins)
+    registry = shared.installed(plugin, no_plugins)
     request = CampaignRequest(
         suites=suites,
         planners=planner or (),

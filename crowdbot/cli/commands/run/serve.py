@@ -8,46 +8,9 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from crowdbot.cli.serving.serve_arguments import (
-    AllowOrigin,
-    Budget,
-    Clock,
-    ClockChoice,
-    Connect,
-    Distro,
-    DistroChoice,
-    Domain,
-    Epoch,
-    Foxglove,
-    Hold,
-    Host,
-    Missed,
-    MissedChoice,
-    PlannerName,
-    Port,
-    Rate,
-    References,
-    RosVersion,
-    Stamped,
-    Stay,
-    Token,
-    Wait,
-    Zenoh,
-    ZenohRouter,
-)
+import crowdbot.cli.serving.serve_arguments as arguments
+import crowdbot.cli.shared.run_arguments as run_arguments
 from crowdbot.cli.shared.options import NoPlugins, Plugins, installed
-from crowdbot.cli.shared.run_arguments import (
-    AllScores,
-    AsJson,
-    MeshcatPort,
-    OutRoot,
-    Overrides,
-    Record,
-    RecordChoice,
-    RunSeed,
-    ScenarioArgument,
-    SpecArgument,
-)
 from crowdbot.errors import InputError
 
 if TYPE_CHECKING:
@@ -61,39 +24,39 @@ if TYPE_CHECKING:
 
 
 def serve(
-    spec: SpecArgument,
-    scenario: ScenarioArgument = None,
-    host: Host = "127.0.0.1",
-    port: Port = 9090,
-    token: Token = None,
-    connect: Connect = None,
-    stamped: Stamped = False,
-    zenoh: Zenoh = None,
-    zenoh_router: ZenohRouter = False,
-    domain: Domain = 0,
-    distro: Distro = DistroChoice.jazzy,
-    foxglove: Foxglove = None,
-    allow_origin: AllowOrigin = None,
-    meshcat: MeshcatPort = None,
-    rate: Rate = None,
-    clock: Clock = ClockChoice.internal,
-    budget: Budget = 5.0,
-    missed: Missed = MissedChoice.stop,
-    hold: Hold = 0.5,
-    wait: Wait = None,
-    epoch: Epoch = 0,
-    ros: RosVersion = 2,
-    name: PlannerName = "live",
-    stay: Stay = False,
-    overrides: Overrides = None,
-    seed: RunSeed = 0,
-    out: OutRoot = Path("runs"),
-    record: Record = RecordChoice.all,
-    references: References = False,
+    spec: run_arguments.SpecArgument,
+    scenario: run_arguments.ScenarioArgument = None,
+    host: arguments.Host = "127.0.0.1",
+    port: arguments.Port = 9090,
+    token: arguments.Token = None,
+    connect: arguments.Connect = None,
+    stamped: arguments.Stamped = False,
+    zenoh: arguments.Zenoh = None,
+    zenoh_router: arguments.ZenohRouter = False,
+    domain: arguments.Domain = 0,
+    distro: arguments.Distro = arguments.DistroChoice.jazzy,
+    foxglove: arguments.Foxglove = None,
+    allow_origin: arguments.AllowOrigin = None,
+    meshcat: run_arguments.MeshcatPort = None,
+    rate: arguments.Rate = None,
+    clock: arguments.Clock = arguments.ClockChoice.internal,
+    budget: arguments.Budget = 5.0,
+    missed: arguments.Missed = arguments.MissedChoice.stop,
+    hold: arguments.Hold = 0.5,
+    wait: arguments.Wait = None,
+    epoch: arguments.Epoch = 0,
+    ros: arguments.RosVersion = 2,
+    name: arguments.PlannerName = "live",
+    stay: arguments.Stay = False,
+    overrides: run_arguments.Overrides = None,
+    seed: run_arguments.RunSeed = 0,
+    out: run_arguments.OutRoot = Path("runs"),
+    record: run_arguments.Record = run_arguments.RecordChoice.all,
+    references: arguments.References = False,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    everything: AllScores = False,
-    as_json: AsJson = False,
+    everything: run_arguments.AllScores = False,
+    as_json: run_arguments.AsJson = False,
 ) -> None:
     """Serve one scenario as a rosbridge server: external programs drive its robots.
 
@@ -137,7 +100,7 @@ class _Serving:
     """The run options of ``crowdbot serve``."""
 
     out: Path
-    record: RecordChoice
+    record: run_arguments.RecordChoice
     references: bool
     name: str
     seed: int

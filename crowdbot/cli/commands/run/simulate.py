@@ -8,30 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+import crowdbot.cli.shared.options as shared
+import crowdbot.cli.shared.run_arguments as run_arguments
 from crowdbot.cli.shared.option import option, switch
-from crowdbot.cli.shared.options import (
-    MEMORY_GIB,
-    InProcess,
-    MakeReferences,
-    NoPlugins,
-    PlannerMemory,
-    PlannerSet,
-    Plugins,
-    ReplaceDraws,
-    installed,
-    planner_place,
-)
-from crowdbot.cli.shared.run_arguments import (
-    AllScores,
-    AsJson,
-    MeshcatPort,
-    OutRoot,
-    Overrides,
-    RecordChoice,
-    RunSeed,
-    ScenarioArgument,
-    SpecArgument,
-)
 from crowdbot.errors import UsageError
 
 if TYPE_CHECKING:
@@ -39,8 +18,8 @@ if TYPE_CHECKING:
 
 
 def simulate(
-    spec: SpecArgument,
-    scenario: ScenarioArgument = None,
+    spec: run_arguments.SpecArgument,
+    scenario: run_arguments.ScenarioArgument = None,
     planner: Annotated[
         list[str] | None,
         option(
@@ -48,31 +27,31 @@ def simulate(
             "The planner under test, dwa by default; repeatable with the names of robots.",
         ),
     ] = None,
-    overrides: Overrides = None,
-    planner_set: PlannerSet = None,
-    seed: RunSeed = 0,
-    out: OutRoot = Path("runs"),
+    overrides: run_arguments.Overrides = None,
+    planner_set: shared.PlannerSet = None,
+    seed: run_arguments.RunSeed = 0,
+    out: run_arguments.OutRoot = Path("runs"),
     record: Annotated[
-        RecordChoice | None,
+        run_arguments.RecordChoice | None,
         typer.Option(help="Sensors to simulate and record; default: the suite's, or used."),
     ] = None,
-    references: MakeReferences = True,
+    references: shared.MakeReferences = True,
     force: Annotated[bool, switch("--force", "Run again, even if the run is complete.")] = False,
     step_budget: Annotated[
         float | None, option("SECONDS", "Wall time that a planner step may take.")
     ] = None,
-    replace_draws: ReplaceDraws = 0,
+    replace_draws: shared.ReplaceDraws = 0,
     duration: Annotated[
         float | None,
         option("SECONDS", "How long people walk in a scenario without a robot; default 60."),
     ] = None,
-    in_process: InProcess = None,
-    planner_memory: PlannerMemory = MEMORY_GIB,
-    meshcat: MeshcatPort = None,
-    plugin: Plugins = None,
-    no_plugins: NoPlugins = False,
-    everything: AllScores = False,
-    as_json: AsJson = False,
+    in_process: shared.InProcess = None,
+    planner_memory: shared.PlannerMemory = shared.MEMORY_GIB,
+    meshcat: run_arguments.MeshcatPort = None,
+    plugin: shared.Plugins = None,
+    no_plugins: shared.NoPlugins = False,
+    everything: run_arguments.AllScores = False,
+    as_json: run_arguments.AsJson = False,
 ) -> None:
     """Simulate one scenario with one planner, or its people alone; record, score and replay it.
 
@@ -88,7 +67,7 @@ def simulate(
     from crowdbot.core.support.stdout_guard import stdout_to_stderr
 
     with stdout_to_stderr():
-        registry = installed(plugin, no_plugins)
+        registry = shared.installed(plugin, no_plugins)
         expansion = open_spec(spec, registry, overrides or ())
         chosen = pick(expansion, scenario)
         _check_planners(planner or (), chosen)
@@ -111,7 +90,7 @@ def simulate(
                     step_budget=step_budget,
                     replace_draws=replace_draws,
                     duration=duration,
-                    place=planner_place(in_process, planner_memory),
+                    place=shared.planner_place(in_process, planner_memory),
                 ),
                 progress=progress,
                 stop=stop,

@@ -8,21 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+import crowdbot.cli.shared.run_arguments as run_arguments
 from crowdbot.cli.serving.person_run import PagePorts, PersonRun, page_of, request_of, show_end
 from crowdbot.cli.shared.option import option
 from crowdbot.cli.shared.options import NoPlugins, PlannerSet, Plugins, installed
 from crowdbot.cli.shared.person_arguments import OpenPage, PagePort, Rate, ReplayRun
-from crowdbot.cli.shared.run_arguments import (
-    AllScores,
-    AsJson,
-    OutRoot,
-    Overrides,
-    Record,
-    RecordChoice,
-    RunSeed,
-    ScenarioArgument,
-    SpecArgument,
-)
 
 if TYPE_CHECKING:
     from crowdbot.core.live.person.teleop import Controls
@@ -30,8 +20,8 @@ if TYPE_CHECKING:
 
 
 def teleop(
-    spec: SpecArgument,
-    scenario: ScenarioArgument = None,
+    spec: run_arguments.SpecArgument,
+    scenario: run_arguments.ScenarioArgument = None,
     robot: Annotated[
         str | None, typer.Option(help="The robot with the stick; default: the first.")
     ] = None,
@@ -62,10 +52,10 @@ def teleop(
     name: Annotated[
         str, typer.Option(help="Name of the planner in the record; default: teleop.")
     ] = "",
-    overrides: Overrides = None,
-    seed: RunSeed = 0,
-    out: OutRoot = Path("runs"),
-    record: Record = RecordChoice.used,
+    overrides: run_arguments.Overrides = None,
+    seed: run_arguments.RunSeed = 0,
+    out: run_arguments.OutRoot = Path("runs"),
+    record: run_arguments.Record = run_arguments.RecordChoice.used,
     references: Annotated[
         bool,
         typer.Option(
@@ -74,8 +64,8 @@ def teleop(
     ] = True,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    everything: AllScores = False,
-    as_json: AsJson = False,
+    everything: run_arguments.AllScores = False,
+    as_json: run_arguments.AsJson = False,
 ) -> None:
     """Drive a robot yourself: keyboard, mouse, touch or gamepad, in a page on this machine.
 

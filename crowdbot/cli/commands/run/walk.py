@@ -9,21 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+import crowdbot.cli.shared.run_arguments as run_arguments
 from crowdbot.cli.serving.person_run import PagePorts, PersonRun, page_of, request_of, show_end
 from crowdbot.cli.shared.option import option
 from crowdbot.cli.shared.options import MakeReferences, NoPlugins, PlannerSet, Plugins, installed
 from crowdbot.cli.shared.person_arguments import OpenPage, PagePort, Rate, ReplayRun
-from crowdbot.cli.shared.run_arguments import (
-    AllScores,
-    AsJson,
-    OutRoot,
-    Overrides,
-    Record,
-    RecordChoice,
-    RunSeed,
-    ScenarioArgument,
-    SpecArgument,
-)
 from crowdbot.errors import UsageError
 
 if TYPE_CHECKING:
@@ -36,8 +26,8 @@ _FARTHEST = 1e6
 
 
 def walk(
-    spec: SpecArgument,
-    scenario: ScenarioArgument = None,
+    spec: run_arguments.SpecArgument,
+    scenario: run_arguments.ScenarioArgument = None,
     at: Annotated[str | None, option("X,Y", "Your start, m; default: a free place.")] = None,
     goal: Annotated[
         str | None, option("X,Y", "Your own goal, m: your trip is then scored, too.")
@@ -61,15 +51,15 @@ def walk(
     open_: OpenPage = False,
     rate: Rate = 1.0,
     replay: ReplayRun = None,
-    overrides: Overrides = None,
-    seed: RunSeed = 0,
-    out: OutRoot = Path("runs"),
-    record: Record = RecordChoice.used,
+    overrides: run_arguments.Overrides = None,
+    seed: run_arguments.RunSeed = 0,
+    out: run_arguments.OutRoot = Path("runs"),
+    record: run_arguments.Record = run_arguments.RecordChoice.used,
     references: MakeReferences = True,
     plugin: Plugins = None,
     no_plugins: NoPlugins = False,
-    everything: AllScores = False,
-    as_json: AsJson = False,
+    everything: run_arguments.AllScores = False,
+    as_json: run_arguments.AsJson = False,
 ) -> None:
     """Walk in the crowd yourself, with a body that people and robots see and avoid.
 
