@@ -150,7 +150,7 @@ class Item:
         return int(value)
 
     def truth(self) -> bool:
-        """Return the value as a truth value.
+        """Return the value as a bool.
 
         Raises:
             SpecError: E402, it is not one.
@@ -161,7 +161,7 @@ class Item:
         return found
 
     def word(self, *known: str) -> str:
-        """Return the value as one of some words, in lower case.
+        """Return the value in lower case, which must be one of the given words.
 
         Raises:
             SpecError: E402, it is another one.

@@ -1,4 +1,4 @@
-"""Files of other programs: bounded, and with the lines that messages show."""
+"""Read files of other programs, limited in size, with positions for messages."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ class Observer(Protocol):
     high: Vectors
 
     def observe(self, seen: RobotInputs) -> Vectors:
-        """Return (W, N) float32 within the bounds; a new array."""
+        """Return observations (W, N), float32 within the bounds; a new array."""
         ...
 
 
@@ -40,7 +40,7 @@ class Reward(Protocol):
     """Computes the reward of steps."""
 
     def of(self, change: StepChange) -> Array:
-        """Return (W,) finite float64."""
+        """Return the rewards of W robots: (W,) finite float64."""
         ...
 
 

@@ -47,11 +47,11 @@ class Truth:
         people_notice: (N,) time to contact from which a person responds to a robot that moves, s:
             infinite for people who notice as soon as it is within sight, 0 for those who never do
             and for robots; empty if it is not known.
-        foresee: ``foresee(steps, step, path)`` returns where these people will be after each of
-            some steps (s), (T, N, 2) in m, and 1e6 where one is no longer there: the crowd itself
-            walks on, beside a robot on a path (T + 1, 3) of x, y and yaw, or as if there was none
-            (``path`` None). None in a process of its own, among several robots, and where people
-            are led or belong to others.
+        foresee: ``foresee(steps, step, path)`` simulates these people ahead, and returns their
+            positions (T, N, 2), m, after each of ``steps`` steps of ``step`` s; 1e6 for those who
+            have left. ``path``: (T + 1, 3) x, y, yaw of the robot now and after each step, m, rad;
+            None: without a robot. ``foresee`` is None in a separate process, with several robots,
+            and if a hook or a policy of a plugin moves people.
     """
 
     pose: Pose

@@ -58,7 +58,7 @@ class Corridor:
 
 
 def corridors(seed: int, *, warm_up: float = WARM_UP, duration: float = DURATION) -> list[Corridor]:
-    """Return both flows at all densities."""
+    """Return the corridors to simulate: both flows at all densities."""
     return [
         Corridor(flow=f, density=d, seed=seed, warm_up=warm_up, duration=duration)
         for f in FLOWS

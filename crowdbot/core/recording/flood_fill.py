@@ -1,4 +1,4 @@
-"""Cells of a map that are connected to one of them; compiled."""
+"""Find the cells of a map that are connected to a given cell; compiled."""
 
 from __future__ import annotations
 

@@ -117,7 +117,7 @@ def _frame(ns: int, wheel: UrdfJoint, angle: float) -> Any:
 
 
 def _product(a: Quaternion, b: Quaternion) -> Quaternion:
-    """Return the rotation b, then a; x, y, z, w."""
+    """Return the quaternion x, y, z, w of rotation b followed by rotation a."""
     ax, ay, az, aw = a
     bx, by, bz, bw = b
     return (

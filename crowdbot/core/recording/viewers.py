@@ -138,7 +138,7 @@ class RobotPath:
 
 
 def _coarse(t: float, x: float, y: float, yaw: float) -> Any:
-    """Return a pose of a path."""
+    """Return a rounded pose of a path, which compresses well."""
     short = Pose(round(x * _GRID) / _GRID, round(y * _GRID) / _GRID, yaw)
     pose = ros.pose_stamped(ros.nanoseconds(t), "map", short)
     turn = pose.pose.orientation

@@ -55,7 +55,7 @@ def check_masses(described: Description) -> None:
 
 
 def _parts(described: Description) -> dict[str, list[str]]:
-    """Return the links that move as one, by the link from which they hang."""
+    """Return groups of rigidly connected links, by the topmost link of each group."""
     above = {joint.child: joint for joint in described.joints.values()}
     parts = dict[str, list[str]]()
     for name in described.links:

@@ -121,7 +121,7 @@ class _Frames:
         return self.link_of(on.strip(), (*below, name)) if on else name
 
     def model(self) -> Xml.Element:
-        """Return a copy of the model with each frame where it is used."""
+        """Return a copy of the model in which each moving link has its origin at its joint."""
         made = deepcopy(self._source)
         hung = {
             self.link_of((j.findtext("child") or "").strip()): name_of(j)

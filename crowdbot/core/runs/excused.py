@@ -41,7 +41,7 @@ def excuse_of(
 
 
 def with_draw(scenario: Scenario, draw: int) -> Scenario:
-    """Return a scenario with the people of another draw; 0 is its own."""
+    """Return a scenario with the people of another draw; draw 0 is the scenario's own."""
     if not draw or scenario.crowd is None:
         return scenario
     seed = scenario.crowd.seed

@@ -199,7 +199,7 @@ def _shared_file(expansion: Expansion, files: LockFiles, text: str) -> str | Non
 
 
 def _marks(node: Node) -> Iterator[Mark]:
-    """Yield where each value of a tree is written."""
+    """Yield the position in its file of each value of a tree."""
     yield node.mark
     for entry in node.entries.values():
         yield from _marks(entry.node)

@@ -151,7 +151,7 @@ def _entries(root: Item, name: str) -> list[Item]:
 
 
 def _root(top: Item) -> Item:
-    """Return the scenario itself: in a message to a running program it is a part, ``config``."""
+    """Return the scenario's root: in a message to a running program it is the part ``config``."""
     inside = top.find("config") if any(c.name == "geometry_wkt" for c in top.children) else None
     return inside if inside is not None and _is_scenario(inside) else top
 

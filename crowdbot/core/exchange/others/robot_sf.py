@@ -130,7 +130,7 @@ def _move(sf_map: RobotSfMap, corner: tuple[float, float]) -> None:
 
 
 def _label(item: Item) -> str:
-    """Return the label of a shape; without one its id, if that is a name of the format."""
+    """Return a shape's label; without one, its id if that is a label of the format."""
     label = item.find("@label")
     if label is not None:
         return label.text()

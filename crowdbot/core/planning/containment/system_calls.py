@@ -144,7 +144,7 @@ def _program(*, network: bool, signals: bool) -> list[bytes]:
     me = _SELF
 
     def only(name: str, checks: Sequence[bytes]) -> list[bytes]:
-        """Return checks of one call's arguments; they end with a return."""
+        """Return filter instructions that check one call's arguments; they end with a return."""
         number = numbers[name]
         return [] if number is None else [_jump(_EQUAL, number, 0, len(checks)), *checks]
 

@@ -24,7 +24,7 @@ _INFO = ("category", "frame", "rate", "ros_type", "range_min", "range_max", "pri
 def reset_message(
     task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
 ) -> dict[str, Any]:
-    """Return ``reset``, without the size of the memory."""
+    """Return the message ``reset``, without the size of the shared memory."""
     person = {} if task.person is None else {"person": asdict(task.person)}
     return {
         "type": "reset",

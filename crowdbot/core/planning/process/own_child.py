@@ -168,5 +168,5 @@ def main(order: Mapping[str, Any]) -> None:
 
 
 def _stream(descriptor: int) -> io.TextIOWrapper:
-    """Return a line-buffered stream, in a pipe too."""
+    """Return a line-buffered text stream, also if the descriptor is a pipe."""
     return open(descriptor, "w", buffering=1, encoding="utf-8", errors="replace", closefd=False)
