@@ -1,4 +1,4 @@
-"""Parts of imported files: a tree whose nodes know their position, and if they were used.
+"""Parts of imported files: a tree whose nodes have positions, and record if they were used.
 
 Elements, attributes, keys and entries are all items. An attribute ``x`` of an element is its child
 ``@x``. Items that no reader used are found at the end, so that nothing is dropped silently.

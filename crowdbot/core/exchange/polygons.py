@@ -40,7 +40,7 @@ def add_polygon(
 def _add_block(
     scene: Draft, report: Report, item: Item, points: Sequence[Corner], name: str
 ) -> None:
-    """Add an outline as a block; one that crosses itself as the parts that it encloses."""
+    """Add an outline as a block; split one that crosses itself into the parts that it encloses."""
     from shapely import Polygon, make_valid  # type: ignore[import-untyped,unused-ignore]
 
     whole = Polygon([(p[0], p[1]) for p in points])

@@ -137,7 +137,7 @@ def _in_metres(
 
 
 def _names(rows: Sequence[Sequence[str]], columns: Mapping[str, int]) -> dict[str, int]:
-    """Return the numbers of people with names, as they appear; none if all have numbers."""
+    """Return name -> number of people, in order of appearance; empty if all ids are numbers."""
     at = columns.get("id", 0)
     found = dict.fromkeys(row[at].strip().strip('"') for row in rows if len(row) > at)
     if not columns or not any(c.isalpha() for name in found for c in name):

@@ -156,7 +156,7 @@ def named_signal(name: str, value: float) -> tuple[str, float]:
 
 
 class SignalBounds:
-    """The number of signals in one run, which recordings and pages have to hold."""
+    """Limits the signals of one run, since recordings and pages have to hold them."""
 
     def __init__(
         self, subject: str = "log", kind: str = "signals", most: int = _MOST_VALUES

@@ -42,7 +42,7 @@ def planner_files(text: str, include: Iterable[str] = ()) -> dict[str, Path]:
 
 
 def _of_document(path: Path) -> set[Path]:
-    """Return files in the folder of a document that it names."""
+    """Return the files that a document names and that lie in its folder."""
     document, folder = read_document(path, str(path)), path.resolve().parent
     if not isinstance(document, dict):
         raise InputError(f"{path}: a file of a planner has fields, such as 'kind: dwa'")

@@ -1,4 +1,4 @@
-"""Statistics of a crowd, which are compared; all that is kept of recordings."""
+"""Statistics of a crowd, for comparison; nothing else is kept of recordings."""
 
 from __future__ import annotations
 

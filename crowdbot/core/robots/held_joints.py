@@ -18,7 +18,7 @@ _TURNS, _SLIDES = ("revolute", "continuous"), ("prismatic",)
 
 
 def hold_at(robot: Xml.Element, positions: Mapping[str, float]) -> None:
-    """Move the origins of joints to their fixed angles, and of joints that mimic them.
+    """Turn the origins of joints, and of those that mimic them, to the angles of ``positions``.
 
     Args:
         robot: a URDF; it is changed.

@@ -151,7 +151,7 @@ class _Frames:
         _write(link, place)
 
     def _straighten(self, joint: Xml.Element, places: Mapping[str, Array]) -> None:
-        """Take a joint's pose away: its axis turns into the child's frame."""
+        """Remove a joint's pose, and express its axis in the child's frame."""
         name = name_of(joint)
         own = self.pose(name)
         for end in ("parent", "child"):

@@ -198,7 +198,7 @@ def _robot(item: Item, at: tuple[float, float], way: _Way, scene: Draft, report:
 def _robot_goal(
     item: Item, at: tuple[float, float], way: _Way, scene: Draft, report: Report
 ) -> tuple[float, float]:
-    """Return the last way point to which a way leads, m; without one a place near the start."""
+    """Return the last way point that can be reached, m; without one a place near the start."""
     floor = FreeFloor(scene)
     middles = [(0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3])) for _, b in reversed(way)]
     apart = [(name, goal) for (name, _), goal in zip(reversed(way), middles, strict=True)

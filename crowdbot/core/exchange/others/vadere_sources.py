@@ -97,7 +97,7 @@ def _newer(item: Item, name: str, usual: float) -> float:
 
 
 def _when(item: Item, count: int, fields: Data, report: Report) -> Data:
-    """Return ``count`` for people who are there at once, else ``arrivals``."""
+    """Return ``count`` for people who are present from the start, else ``arrivals``."""
     begin = fields.get("begin", _newer(item, "constraintsTimeStart", 0.0))
     ends = item.find("endTime")
     end = ends.number() if ends else _newer(item, "constraintsTimeEnd", begin)

@@ -11,7 +11,7 @@ from crowdbot.core.exchange.scene import Data, Draft
 
 @dataclass(slots=True)
 class Topography:
-    """Targets by id, and the scene that is filled."""
+    """Targets by id, and the scene to which elements are added."""
 
     scene: Draft
     report: Report
