@@ -99,7 +99,7 @@ class FreeFloor:
         return [Polygon(ring) for part in parts for ring in getattr(part, "interiors", ())]
 
     def joins(self, start: Any, goal: Any, radius: float) -> bool:
-        """Return True if one part of the free floor has room in both of two shapes."""
+        """Return True if one connected part of the free floor has room in both shapes."""
         free = self.of(radius)
         parts = getattr(free, "geoms", [free])
         return any(part.intersects(start) and part.intersects(goal) for part in parts)

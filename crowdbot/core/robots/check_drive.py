@@ -1,4 +1,4 @@
-"""Limits of a robot that its drive cannot keep by its own numbers: speed, acceleration, track."""
+"""Check a robot's limits against its drive's numbers: speed, acceleration, track."""
 
 from __future__ import annotations
 

@@ -95,7 +95,7 @@ def deny_signals(version: int) -> None:
 
 
 def _ruleset(version: int, rights: int, tcp: int) -> int:
-    """Return the descriptor of a set of rules without rules; older versions know fewer fields."""
+    """Return the descriptor of an empty set of rules; older versions know fewer fields."""
     signals = _ABSTRACT_SOCKETS_AND_SIGNALS if version >= ABI_SIGNALS else 0
     fields = 3 if signals else 2 if version >= _ABI_TCP else 1
     given = _Ruleset(rights, tcp, signals)

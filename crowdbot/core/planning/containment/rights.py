@@ -1,4 +1,4 @@
-"""Rights that a process of root gives up: all but those to read files of others.
+"""Give up the rights of a process of root, except those to read files of others.
 
 Linux lets a process of the same user open another's ``/proc/PID/mem``, or trace it, unless that
 process forbids it; root always may, and has to drop the capability. See ptrace(2), section "Ptrace
