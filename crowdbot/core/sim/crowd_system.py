@@ -59,7 +59,7 @@ class CrowdSystem(LeafSystem):
         tick: float = TICK,
         led: Sequence[LedPeople] = (),
     ) -> None:
-        """Take people and robots.
+        """Connect people and robots.
 
         Args:
             pushes: how the force on each robot is written.
@@ -118,7 +118,7 @@ class CrowdSystem(LeafSystem):
             push.write(values.get_mutable_value(self._forces[k]), fx, fy, torque)
 
     def _take_out(self, crowd: Array) -> None:
-        """Let robots that have left since the last tick feel nothing any more."""
+        """Stop forces on robots that have left since the last tick."""
         for k in [k for k in self._leaving if self._endings[k].gone]:
             felt, _ = s.contact_with(crowd, k)
             felt[[s.ROBOT_FX, s.ROBOT_FY, s.ROBOT_TORQUE]] = 0.0
@@ -138,7 +138,7 @@ class CrowdSystem(LeafSystem):
 
     @property
     def foresight(self) -> Foresight | None:
-        """Return what foresees the people; None if that depends on more than their own state."""
+        """Return the predictor of people; None if they depend on more than the crowd's state."""
         foreign = any(group.foreign for group in self.engine.groups)
         if len(self._rows) != 1 or self._led or foreign:
             return None

@@ -34,7 +34,7 @@ class RunRobot:
     Attributes:
         built: its model, sensors and task.
         host: its planner.
-        log: takes what is recorded of it.
+        log: records it.
         ending: how it has ended.
         privileged: True if its planner sees the truth.
     """
@@ -83,7 +83,7 @@ def build_diagram(
     """Wire one run.
 
     Args:
-        robots: one or several, of one scenario.
+        robots: one or several robots of one scenario.
         engine: the people; None where there are none.
         people: takes what is recorded of them; that of the robot where it is the only one.
         seed: of the run: noise of the sensors, of which each robot has streams of its own.

@@ -1,8 +1,7 @@
-"""Foresight: where people will be, by the crowd itself, advanced on a copy of its state.
+"""Foresight: predict people by advancing a copy of the crowd's state.
 
-People decide, wander and respond to the robot as they will in the run, so what is foreseen comes
-true if the robot drives as was asked. A crowd is a function of its state and of the robot's way,
-so nothing that is foreseen changes the run.
+People decide, wander and respond to the robot as they will in the run, so the prediction comes true
+if the robot drives along the given path. It does not change the run.
 """
 
 from __future__ import annotations
@@ -84,7 +83,7 @@ class Foresight:
 
 
 def _places(flat: Array, late: float) -> Array:
-    """Return places (N, 2) a part of a tick later, s."""
+    """Return positions (N, 2) extrapolated by ``late`` seconds, part of a tick, m."""
     _, rows = s.view(flat)
     here = rows[:, s.WAITING] == s.PRESENT
     places = rows[:, s.X : s.Y + 1] + late * rows[:, s.VX : s.VY + 1]

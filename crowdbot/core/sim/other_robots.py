@@ -20,7 +20,7 @@ class OtherRobots:
         number: of the robot itself, in the order of all.
         models, states, endings: of the others: what they are, the ports with their states, and
             how they have ended.
-        push: what they exert on the robot; None where there are none.
+        push: port of their forces on the robot; None without other robots.
         end_contacts: ends the contacts with them that are going on.
     """
 

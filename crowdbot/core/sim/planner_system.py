@@ -63,7 +63,7 @@ class People:
         notice: (N,) time to contact from which they respond to a robot that moves, s.
         robots: (R,) how far the other robots reach, m; they stand among the people,
             numbered -2, -3, ….
-        foresight: foresees them; None: nothing does.
+        foresight: predicts them; None: not available.
     """
 
     id: NDArray[np.int64]
@@ -109,7 +109,7 @@ class People:
     def _foresee(
         self, crowd: Array, there: NDArray[np.bool_]
     ) -> Callable[[int, float, Array | None], Array] | None:
-        """Return what foresees the people who are there, from a state of the crowd on."""
+        """Return the predictor of the people who are present, starting from a crowd state."""
         seer = self.foresight
         if seer is None:
             return None

@@ -78,7 +78,7 @@ def _convert(
 
 
 class MeasuredRobotState(RobotStateSystem):
-    """The same for a base without driven wheels, with three virtual measuring wheels.
+    """Robot state of a base without driven wheels, with three virtual measuring wheels.
 
     State: pose and the three angles at the last tick.
     """

@@ -18,14 +18,14 @@ _INTERRUPTED_BY = "interrupted by the user"
 def run_outcome(
     robots: Sequence[RunRobot], *, sim_time: float, wall_time: float, cpu_time: float
 ) -> Outcome:
-    """The outcome of the only robot, or of several together; times are those of the run, s."""
+    """Return the outcome of a run with one robot or several; times are those of the run, s."""
     found = {robot.built.name: _robot_outcome(robot) for robot in robots}
     whole = next(iter(found.values())) if len(found) == 1 else _together(robots, found)
     return replace(whole, sim_time=sim_time, wall_time=wall_time, cpu_time=cpu_time)
 
 
 def status_of(ending: RobotEnding) -> str:
-    """Status of a robot whose run is over."""
+    """Return the status of a robot whose run is over."""
     return ending.status or Ending.INTERRUPTED
 
 

@@ -72,7 +72,7 @@ class Exchange:
 
 
 class _Asking:
-    """A planner whose commands are those given to the session."""
+    """Planner that waits for commands from the session."""
 
     def __init__(self, exchange: Exchange, robot: str) -> None:
         self._exchange, self._robot = exchange, robot
@@ -83,7 +83,7 @@ class _Asking:
         """Do nothing: the caller of the session knows all that already."""
 
     def step(self, obs: Observation) -> Command:
-        """Return the command that the session is given."""
+        """Return the next command given to the session."""
         return self._exchange.step(self._robot, obs)
 
 

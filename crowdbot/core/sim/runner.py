@@ -70,7 +70,7 @@ def _has_ended(status: SimulatorStatus) -> bool:
 
 
 def _finish(blocks: Blocks, context: Any) -> None:
-    """Record what is still going on."""
+    """Record all ongoing contacts and trips."""
     t = float(context.get_time())
     for robot in blocks.robots:
         robot.logger.finish(robot.logger.GetMyContextFromRoot(context), t)
@@ -90,6 +90,6 @@ def _progress(stage: str, blocks: Blocks, context: Any, begin: float) -> Progres
 
 
 def _distance(robot: RobotBlocks, context: Any) -> float:
-    """From a robot to its goal zone, m."""
+    """Return the robot's distance to its goal zone, m."""
     x, y, *_ = robot.base.port.Eval(robot.base.state.GetMyContextFromRoot(context))
     return distance_to(robot.given.built.task.goal_zone, x, y)

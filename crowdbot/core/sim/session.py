@@ -219,7 +219,7 @@ class Session:
 
     @property
     def going_on(self) -> tuple[str, ...]:
-        """Names of the robots that have not ended."""
+        """Return the names of the robots that have not ended."""
         return () if self.done else self._going_on
 
     def observe(self) -> Observation:

@@ -132,7 +132,7 @@ def simulate(
 
 
 def _check_duration(scenario: Scenario, options: RunOptions) -> None:
-    """Refuse a duration of a run that its tasks end."""
+    """Refuse the option ``duration`` if the scenario has robots, whose tasks end the run."""
     if options.duration is not None:
         raise InputError(
             f"{scenario.id} has a robot, whose task ends the run; a duration is for people alone. "
@@ -207,7 +207,7 @@ def make_run(
 def _counted_run(
     request: Request, prepared: Prepared, builts: Mapping[str, BuiltRun], identity: RunIdentity
 ) -> RunRecord:
-    """Make the run; again with the next draw while it is excused and draws may be replaced."""
+    """Make the run; repeat it with the next draw while it is excused and draws may be replaced."""
     excused: list[ExcusedPart] = []
     while True:
         paths = make_references(request, references_of(request, prepared))

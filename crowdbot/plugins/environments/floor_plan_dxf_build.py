@@ -134,7 +134,7 @@ def _with_unit(
 
 
 def _meaning(drawing: Any, layer: str, spec: FloorPlanFields, aside: Counter[str]) -> str:
-    """Return what a layer means; empty, and counted, if it is left out."""
+    """Return what a layer holds, such as floor or walls; "" if it is left out."""
     if hidden(drawing, layer):
         aside[f"on layer '{layer}', which is off"] += 1
         return ""
@@ -165,7 +165,7 @@ def _check_layers(drawing: Any, seen: set[str], spec: FloorPlanFields, name: str
 
 
 def _shapes(entity: Any, chord: float, aside: Counter[str]) -> Iterator[Any]:
-    """Yield an entity as polygons where it is closed, else as lines; or count why it is neither."""
+    """Yield polygons for closed entities and lines for others; count unusable ones in ``aside``."""
     kind = entity.dxftype()
     if kind not in (*_CURVES, "HATCH"):
         aside[f"{kind} entities"] += 1
@@ -186,7 +186,7 @@ def _shapes(entity: Any, chord: float, aside: Counter[str]) -> Iterator[Any]:
 
 
 def _courses(entity: Any, chord: float) -> Iterator[list[_Point]]:
-    """Yield the corners of an entity's courses, at most ``chord`` away from it."""
+    """Yield the corners of an entity's polylines, at most ``chord`` away from its curves."""
     from ezdxf import path as paths
 
     if entity.dxftype() == "SPLINE" and _is_periodic(entity):

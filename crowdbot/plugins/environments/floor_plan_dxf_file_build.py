@@ -100,7 +100,7 @@ def entities(drawing: Any, name: str, aside: Counter[str]) -> Iterator[Any]:
 
 
 class _Walk:
-    """One walk through a drawing."""
+    """Recursive iteration over a drawing's entities."""
 
     def __init__(self, drawing: Any, name: str, aside: Counter[str]) -> None:
         self._drawing, self._name, self._aside = drawing, name, aside

@@ -118,7 +118,7 @@ def _around(ring: GridRing, tolerance: float) -> _Events:
 
 
 def _from_anchor(ways: Array, kinds: Ints, rows: Array, ring: GridRing) -> _Events:
-    """Sort events and begin with the end of a line that is surest: after the longest straight."""
+    """Sort events along the ring, starting after its longest straight part."""
     order = np.lexsort([kinds, ways])
     kinds, rows, ways = kinds[order], rows[order], ways[order]
     ends = np.flatnonzero(kinds == _END)

@@ -123,7 +123,7 @@ def all_pillars(
 
     Args:
         named: single pillars.
-        sets: grids and fields; None: there is none.
+        sets: grids and fields; entries may be None.
         floor: where they stand.
         top: height of the walls, m, which pillars reach by default.
     """

@@ -215,7 +215,7 @@ def _read_pgm(name: str, content: bytes) -> NDArray[np.float64]:
 
 
 def _first_pixel(header: re.Match[bytes], size: int) -> int:
-    """Return where the pixels begin: after one blank, or what else makes their number right.
+    """Return the offset of the pixels, bytes: one blank after the header, or where the size fits.
 
     Programs of Windows end the header with two characters, and some with a comment.
     """

@@ -78,7 +78,7 @@ class Acceptance(DeclaredMetric[AcceptanceSpec]):
         return float((speed * np.minimum(missing, _AT_SPEED)).max())
 
     def _forcing(self, run: Trajectories) -> float:
-        """Return the largest evasion that the robot demands while it comes nearer, of `MOST`."""
+        """Return the largest evasion demanded while the robot comes nearer, in units of `MOST`."""
         spec = self.spec
         need = demanded_evasion(run, spec.demand_time, spec.demand_room, spec.jump_speed)
         comes = robot_approach(run, spec.jump_speed) > _CREEPS

@@ -118,7 +118,7 @@ class PersonComfort(DeclaredMetric[specs.PersonComfortSpec]):
         return [self.factory.ok("corrected", 1.0 - 0.5 * (mean + peak), extras)]
 
     def _discomfort(self, stance: PersonStance) -> Array:
-        """Return what is missing to the intimate zone's edge, or to the time, as a share (N,)."""
+        """Return the discomfort (N,) from 0 to 1: the larger lack of room or of time to contact."""
         gap = np.maximum(np.nan_to_num(stance.gap, nan=np.inf), 0.0)
         edge = max(self.spec.intimate, EDGE)
         allowed = np.maximum(np.nan_to_num(stance.advance), 0.0) * self.spec.rush_time

@@ -177,7 +177,8 @@ def _free(
 ) -> tuple[float, float]:
     """Return the time to the first contact, at most the horizon, and the least gap before it, m.
 
-    Who is touched now is touched at once by a velocity towards them, and otherwise leaves no gap.
+    A body that is touched now is hit at once by a velocity towards it; for any other velocity its
+    gap is 0.
     """
     first, least = horizon, room
     for i in range(count):

@@ -27,7 +27,7 @@ def _write(
     pose: Array, twist: Array, goal: Array, fastest: tuple[float, float, float], goal_range: float,
     found: Array,
 ) -> None:  # fmt: skip
-    """Write what `goal_and_motion` returns; ``fastest`` are the largest v, w, vy, 0 for none."""
+    """Write the result of `goal_and_motion`; ``fastest``: largest v, w, vy, 0 if not possible."""
     for w in range(pose.shape[0]):
         dx, dy = goal[w, 0] - pose[w, 0], goal[w, 1] - pose[w, 1]
         bearing = math.atan2(dy, dx) - pose[w, 2]
@@ -51,7 +51,7 @@ def lidar_named(context: LearningContext, name: str) -> tuple[str, SensorInfo]:
 
 
 def bounds(*parts: tuple[int, float, float]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Return lower and upper bounds of parts, each of a number of values between two."""
+    """Return lower and upper bounds of an observation; each part is (length, low, high)."""
     counts = [count for count, _, _ in parts]
     low = np.repeat(np.array([low for _, low, _ in parts], np.float32), counts)
     high = np.repeat(np.array([high for _, _, high in parts], np.float32), counts)

@@ -15,7 +15,7 @@ class Burden:
         self._work, self._progress = spec.work, ProgressReward(spec, context)
 
     def of(self, change: StepChange) -> Array:
-        """Return (W,) rewards."""
+        """Return the rewards (W,) of one step in W worlds."""
         return self._progress.of(change) - self._work * change.work
 
 

@@ -15,7 +15,7 @@ class Comfort:
         self._advance, self._progress = spec.advance, ProgressReward(spec, context)
 
     def of(self, change: StepChange) -> Array:
-        """Return (W,) rewards."""
+        """Return the rewards (W,) of one step in W worlds."""
         return self._progress.of(change) - self._advance * change.advance
 
 

@@ -18,7 +18,7 @@ class ProgressReward:
         self._range = np.array([r if r > 0.0 else np.inf for r in range_of])
 
     def of(self, change: StepChange) -> Array:
-        """Return (W,) rewards."""
+        """Return the rewards (W,) of one step in W worlds."""
         spec, step = self._spec, self._step
         changed = np.abs(change.command - change.before) / self._range
         cost = spec.time + spec.contact * change.contact + spec.wall * change.wall

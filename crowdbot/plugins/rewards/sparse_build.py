@@ -16,7 +16,7 @@ class Sparse:
         self._spec = spec
 
     def of(self, change: StepChange) -> Array:
-        """Return (W,) rewards."""
+        """Return the rewards (W,) of one step in W worlds."""
         spec, gap = self._spec, np.maximum(change.gap, 0.0)
         cost = np.where(gap < spec.near, spec.nearness + spec.slope * np.minimum(gap, spec.near), 0)
         cost = np.where(change.contact > 0.0, spec.contact, cost)

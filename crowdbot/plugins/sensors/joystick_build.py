@@ -65,7 +65,7 @@ class Joystick(DescribedSensor):
         return np.array(self._recorded[k][1:]) if k >= 0 else np.zeros(2)
 
     def _deflection(self, pose: Pose) -> tuple[float, float]:
-        """Deflection of the stick by a steady hand, ahead and to the left, from -1 to 1."""
+        """Return a steady hand's deflection of the stick, ahead and to the left, from -1 to 1."""
         x, y = self._goal[0] - pose.x, self._goal[1] - pose.y
         off = math.remainder(math.atan2(y, x) - pose.yaw, 2.0 * math.pi)
         near = min(1.0, math.hypot(x, y) / self._spec.slow_distance)
@@ -94,7 +94,7 @@ def twist(values: Array) -> dict[str, Any]:
 
 
 def _full(deflection: float) -> float:
-    """Limit a deflection to the stick's full one."""
+    """Limit a deflection to -1..1."""
     return min(1.0, max(-1.0, deflection))
 
 

@@ -1,4 +1,4 @@
-"""RobotContacts: robots that touch each other push each other, by one number for both.
+"""RobotContacts: contact forces between robots, equal and opposite.
 
 The force is that between people and robots (`crowdbot.core.crowd.contact.robot_contact`): Hunt and
 Crossley's along the normal, without friction, never pulling. The default stiffness of shells is
@@ -207,7 +207,7 @@ class RobotContacts(LeafSystem):
         return bool(depth <= 0.0)
 
     def finish(self, k: int) -> None:
-        """End the contacts of robot k that are going on."""
+        """End all ongoing contacts of robot k."""
         for i, j in list(self._going_on):
             if k in (i, j):
                 self._finish(i, j)

@@ -27,7 +27,7 @@ _TOLERANCE = 1e-6
 
 
 def check_starts(builts: Mapping[str, BuiltRun], engine: CrowdEngine | None) -> None:
-    """Look at the start of each robot of a run.
+    """Check the start pose of each robot of a run.
 
     Raises:
         InputError: as `check_start`, or two robots overlap.

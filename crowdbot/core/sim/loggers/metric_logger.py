@@ -139,7 +139,7 @@ class MetricLogger(LeafSystem):
             self.walls.feel(wall_force(self._forces.Eval(context)))
 
     def _end(self, context: Context, t: float, status: str, reason: str) -> EventStatus | None:
-        """The robot has ended; if it was the last one, the run ends, which is then finished."""
+        """End the robot's run; if it is the last robot, finish the whole run."""
         self._feel(context)  # there is no further step
         self._ending.end(status, reason, t)
         if all(other.ended for other in self._others.endings):
@@ -148,7 +148,7 @@ class MetricLogger(LeafSystem):
         return None
 
     def finish(self, context: Context, t: float) -> None:
-        """Record what is still going on, once; ``context`` is this system's own."""
+        """Record ongoing contacts and trips, once; ``context`` is this system's own."""
         if self._finished:
             return
         self._finished = True

@@ -21,7 +21,7 @@ class Recorder(LeafSystem):
     __slots__ = NO_ATTRIBUTES
 
     def __init__(self, writers: Sequence[RecordingWriter]) -> None:
-        """Take the writers of one file; the last one closes the chunk of all."""
+        """Create the recorder of one file's writers; the last writer closes the chunk of all."""
         super().__init__()
         self._writers = tuple(writers)
         self.DeclarePeriodicPublishEvent(_PERIOD, 0.0, self._publish)

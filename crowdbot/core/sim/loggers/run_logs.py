@@ -26,7 +26,7 @@ class RunLogs:
     """The logs of people and of each robot in one run.
 
     Attributes:
-        people: takes what is recorded of people; the only robot's own log where there is one.
+        people: records people; of a run with one robot, that robot's log.
         robots: of each robot, by name.
     """
 
@@ -41,10 +41,10 @@ def run_logs(
     engine: CrowdEngine | None,
     endings: Mapping[str, RobotEnding],
 ) -> Iterator[RunLogs]:
-    """Logs whose recording is closed whatever happens.
+    """Yield the logs of a run; their recording is always closed.
 
-    The only robot of a run has one log with the people; of several, each writes to a namespace of
-    its own beside what they share.
+    A run with one robot has a single log, with the people. Several robots each write to a namespace
+    of their own beside the shared data.
     """
     headers = {name: header_of(setup, built) for name, built in builts.items()}
     if len(builts) == 1:

@@ -19,7 +19,7 @@ OnDrawing = Callable[[float, Drawn], None]
 
 
 class WatchedRun:
-    """Collects what the logs of one tick sample; that of the people comes last."""
+    """Collects the samples of one tick from all logs; that of the people comes last."""
 
     def __init__(
         self,
@@ -28,7 +28,7 @@ class WatchedRun:
         robots: Mapping[str, RecordingHeader],
         endings: Mapping[str, RobotEnding],
     ) -> None:
-        """Tell the watchers that a run begins; see `Watcher.begin`."""
+        """Notify the watchers that a run begins; see `Watcher.begin`."""
         self._watchers, self._endings = tuple(watchers), endings
         self._rows: dict[str, Sequence[float]] = {}
         for watcher in self._watchers:

@@ -120,9 +120,9 @@ def _wall(
 
 @array_kernel
 def _faces(s: int, agent: AgentRecord, walls: Rows[WallRecord], params: Pointer) -> bool:
-    """Return True if the original counts edge s.
+    """Return True if the original model counts wall s.
 
-    It does if it is seen from outside, and not nearest at its second end.
+    It counts if the agent is on its outer side and the wall's nearest point is not its second end.
     """
     wall = walls[s]
     ax, ay, bx, by = wall.ax, wall.ay, wall.bx, wall.by
@@ -134,7 +134,7 @@ def _faces(s: int, agent: AgentRecord, walls: Rows[WallRecord], params: Pointer)
 
 @array_kernel
 def _lost_beyond(least: float, params: Pointer) -> float:
-    """Return the distance (m) beyond which walls are lost in sums from ``least`` on."""
+    """Return the distance (m) beyond which walls do not change a sum of ``least`` m/s^2 or more."""
     own = as_record(params, _PARAMS)
     if least <= 0.0 or own.u0 <= 0.0:
         return math.inf

@@ -82,7 +82,7 @@ def is_known(walls: Rows[WallRecord], s: int, table: int, size: int, work: Point
 
 @array_kernel
 def _leave_out_of_few(walls: Rows[WallRecord], count: int, work: Pointer) -> int:
-    """Do the same by trying all pairs."""
+    """Do as `leave_out_repeated`, by comparing all pairs of walls."""
     table, stay = _FIRST + count, 0
     for k in range(count):
         s, known = chosen(k, work), False
@@ -113,7 +113,10 @@ def repeats(walls: Rows[WallRecord], s: int) -> bool:
 def _walk(
     walls: Rows[WallRecord], s: int, k: int, table: int, size: int, work: Pointer
 ) -> tuple[bool, int]:
-    """Return True if a point like that of wall s comes after place k; and the next empty place."""
+    """Search the table from place k.
+
+    Returns True if it holds the nearest point of wall s, and the next empty place.
+    """
     known = False
     while work[table + k] >= 0.0:
         known = known or _are_one(walls, s, int(work[table + k]))

@@ -53,14 +53,14 @@ class ReactiveReplay:
         self.relaxation_time: float = getattr(inner, "relaxation_time", 0.0)
 
     def accelerations(self, view: CrowdView) -> Array:
-        """Return the other policy's accelerations towards these goals."""
+        """Return the other policy's accelerations towards the recorded positions, m/s^2."""
         return desired_acceleration(
             self._inner, replace(view, goal=places(self._record, view, view.t + self._ahead))
         )
 
 
 def places(record: RecordedCrowd, view: CrowdView, t: float) -> Array:
-    """Return the recorded positions (N, 2) at a time, m; the agent's own before and after."""
+    """Return people's recorded positions (N, 2) at time t (s), m; absent agents keep theirs."""
     found = view.position.copy()
     for i in np.flatnonzero(view.present):
         found[i] = record.at(int(view.agents.id[i]), t)

@@ -115,7 +115,7 @@ class CrowdForecast:
         return np.ascontiguousarray(kept + self.trust * (crowd - kept))
 
     def _check(self, t: float, numbers: Indices, people: Array) -> None:
-        """Compare predictions that were for now with now."""
+        """Compare the predictions due now with people's present positions."""
         while self._checked and self._checked[0].t <= t + 1e-9:
             due = self._checked.popleft()
             count, kept, crowd = self._mean_errors(numbers, people, due)
@@ -130,7 +130,7 @@ class CrowdForecast:
     def _mean_errors(
         self, numbers: Indices, people: Array, due: CheckedPrediction
     ) -> tuple[int, float, float]:
-        """Return how many of those predicted are still there, and the mean square errors, m^2."""
+        """Return the number of predicted people still present, and the mean square errors, m^2."""
         return mean_errors(numbers, people, due.numbers, due.kept, due.crowd)
 
     def _settle(self, t: float, numbers: Indices, people: Array) -> Array:
@@ -145,7 +145,7 @@ class CrowdForecast:
         self, people: Array, desired: Array, path: Array, radius: float | None, step: float,
         kept: Array,
     ) -> Array:  # fmt: skip
-        """Return where people will be who decide as the crowd does, (T, N, 2), m.
+        """Return the positions (T, N, 2) of people predicted by the crowd engine, m.
 
         Those who stand, and those far away, keep their velocity, as in ``kept``.
         """

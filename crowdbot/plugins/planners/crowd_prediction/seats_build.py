@@ -1,4 +1,4 @@
-"""Compiled parts of `CrowdForecast`: assign people to imagined ones, and read results back."""
+"""Compiled parts of `CrowdForecast`: assign people to simulated agents ("seats"), read results."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FAR = 20.0
 def seated(
     people: Array, desired: Array, here: Array, slowest: float, most: int, speeds: Array
 ) -> tuple[tuple[Array, Array, Array, Mask], Indices, Array]:
-    """Give those who walk, the nearest first, the free seats of the nearest speeds.
+    """Assign walking people, nearest first, to free simulated agents of the nearest speed.
 
     Args:
         people: (N, 5) x, y, vx, vy, radius; m, m/s.
@@ -123,7 +123,7 @@ def settle(
 def mean_errors(
     numbers: Indices, people: Array, due: Indices, kept: Array, crowd: Array
 ) -> tuple[int, float, float]:
-    """Return how many of those predicted are still there, and the mean square errors, m^2.
+    """Return the number of predicted people still present, and the mean square errors, m^2.
 
     Args:
         numbers, people: (N,), (N, 5) people now.

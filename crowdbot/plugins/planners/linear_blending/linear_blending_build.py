@@ -29,7 +29,7 @@ class LinearBlending:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Store the outline, reset the other half; compile kernels."""
+        """Store the outline, reset the other planner; compile kernels."""
         self._user.reset(sensors, limits)
         self._surroundings.reset(sensors)
         self._robot = covering_discs(self._spec.robot_radius, task.robot)

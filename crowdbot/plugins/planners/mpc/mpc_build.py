@@ -116,7 +116,7 @@ class Mpc:
     def _improved(
         self, world: AroundRobot, state: MotionState, waypoint: tuple[float, float], top: float
     ) -> Array | None:
-        """Return the plan that costs least after the solver had it; None if it always fails."""
+        """Return the cheapest plan found by the solver; None if it fails from every start."""
         assert self._problem is not None
         problem, values = self._problem, self._state_of(state, waypoint, top)
         others = starts(state, waypoint, problem.limits, self._plan.shape, problem.dt, top)

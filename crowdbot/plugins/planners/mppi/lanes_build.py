@@ -149,7 +149,7 @@ def move(lanes: RolloutLanes, dt: float) -> None:
 
 @kernel
 def keep(lanes: RolloutLanes, goal: tuple[float, float], kept: Array) -> None:
-    """Write `KEPT` rows (KEPT, LANES) of all rollouts."""
+    """Write position, heading, velocity and goal distance of all rollouts (KEPT, LANES)."""
     x, y = lanes.x, lanes.y
     _copy(x, kept[X])
     _copy(y, kept[Y])

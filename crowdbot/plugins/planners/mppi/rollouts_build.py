@@ -114,7 +114,7 @@ def _among_people(
     pose: tuple[float, float, float, float],
     need: float,
 ) -> tuple[bool, float]:
-    """Return if a person is nearer than needed at step n, and the share of closeness.
+    """Return True if a person is nearer than needed at step n, and the share of closeness.
 
     Args:
         around: the surroundings.

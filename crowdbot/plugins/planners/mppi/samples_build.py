@@ -192,7 +192,7 @@ def weighted_mean(p: Array, samples: Samples, least: float) -> None:
 
 
 def drawn(samples: int, steps: int, knots: int, simple: int, seed: int) -> Samples:
-    """Return the arrays for a number of rollouts, steps, knots and simple plans.
+    """Return new arrays of a sampler, with its noise drawn.
 
     Args:
         samples, steps, knots, simple: counts.

@@ -18,7 +18,7 @@ _TOUCH = 0.01
 
 
 class Forced:
-    """Work per mass of a robot against people who accelerate away from it, by their number.
+    """The robot's work per mass (J/kg) against each person who accelerates away, by number.
 
     Args:
         robot: (D, 3) discs of the robot in its frame: x, y, radius, m.
@@ -30,7 +30,7 @@ class Forced:
         self._last: tuple[float, Truth] | None = None
 
     def see(self, t: float, truth: Truth) -> None:
-        """Add the work since the last time that was seen, s."""
+        """Add the work done since the last call; ``t`` is the time now, s."""
         if self._last is not None and t > self._last[0]:
             before, was = self._last
             numbers, old, new = np.intersect1d(

@@ -42,7 +42,7 @@ State = tuple[float, float, float, float, float, float]
 
 
 class Oracle(CrowdPrediction):
-    """Predicts people as if the robot was not there; plans decide what they do for it."""
+    """Predicts people as if the robot was not there; in each plan they then give way to it."""
 
     name = "oracle"
 
@@ -66,7 +66,10 @@ class Oracle(CrowdPrediction):
         self._careful[_CLEARANCES] = usual[_CLEARANCES]
 
     def step(self, obs: Observation) -> Command:
-        """Return the beginning of the best plan; with rehearsals, of one that touches no one."""
+        """Return the first command of the best plan.
+
+        If the crowd can be simulated ahead, return that of a plan that touches no one there.
+        """
         self._planned = None
         self._p = self._bold if self._rehearses(obs.truth) else self._careful
         command = super().step(obs)

@@ -44,7 +44,7 @@ class Rehearsal:
         steps: of a path that are tried.
 
     Args:
-        time: how far the crowd is asked, s.
+        time: how far ahead the crowd is simulated, s.
         robot: (D, 3) discs of the robot in its frame: x, y, radius, m.
     """
 
@@ -119,7 +119,7 @@ class Rehearsal:
 
 
 def _looks(poses: Array) -> Array:
-    """Return the poses at each look from those after each step; both begin now."""
+    """Resample poses (T + 1, 3), `STEP` s apart, to the times of the contact checks."""
     steps = STEP * np.arange(len(poses))
     times = _LOOK * np.arange(int(steps[-1] / _LOOK) + 1)
     return np.column_stack([np.interp(times, steps, column) for column in poses.T])

@@ -78,11 +78,11 @@ def _free(gap: float, p: Array) -> float:
 
 @kernel
 def _passing(body: Array, discs: Array, aside: tuple[float, float], p: Array) -> float:
-    """Return the interaction of a way with one of a person's: a product over its times.
+    """Return the interaction of the robot's path with one path of a person: a product over time.
 
-    Bodies do not pass through each other: what touched once touches until the way ends. Else a way
-    would be the more likely the faster it leads through a person. Where the robot stands a contact
-    counts less: people walk round what stands.
+    Bodies do not pass through each other: once in contact, they count as in contact until the path
+    ends. Otherwise a path would be the more likely the faster it leads through a person. Where the
+    robot stands a contact counts less, since people walk round it.
 
     Args:
         body: (5,) x, y, vx, vy, radius.
@@ -109,7 +109,7 @@ def _passing(body: Array, discs: Array, aside: tuple[float, float], p: Array) ->
 
 @kernel
 def _can_meet(body: Array, discs: Array, p: Array) -> bool:
-    """Return True if one of a person's ways comes near the robot's."""
+    """Return True if one of a person's possible paths comes near the robot's."""
     for i in range(discs.shape[0]):
         t = (i + 1) * STEP
         wide = _FAR * p[SAFETY] + math.sqrt(2.0) * _SPAN * p[PEOPLE_SPREAD] * t + body[4]
@@ -144,7 +144,7 @@ def _person(body: Array, discs: Array, p: Array) -> float:
 
 @kernel
 def _still(bodies: Array, discs: Array, p: Array) -> float:
-    """Return the log of the interaction of a way with what stands; of its points one counts."""
+    """Return the log of the interaction of a path with the nearest static obstacle in each step."""
     total, least, touched = 0.0, 1.0 - p[AVOIDANCE], False
     for i in range(discs.shape[0]):
         free = least if touched else 1.0

@@ -39,7 +39,7 @@ class SafetyStop:
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
     ) -> None:
-        """Store limits and outline, reset the other half; compile kernels."""
+        """Store limits and outline, reset the other planner; compile kernels."""
         self._user.reset(sensors, limits)
         self._surroundings.reset(sensors)
         self._robot = covering_discs(self._spec.robot_radius, task.robot)
@@ -83,5 +83,5 @@ class SafetyStop:
 
 
 def build(spec: SafetyStopSpec, half: Planner | None = None) -> SafetyStop:
-    """Build a planner from its spec, and the planner that takes over."""
+    """Build a planner from its spec; ``half``: the planner that takes over, if any."""
     return SafetyStop(spec, half)

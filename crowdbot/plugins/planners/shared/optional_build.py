@@ -1,4 +1,4 @@
-"""Libraries of single planners, installed by extras of crowdbot."""
+"""Import optional libraries of planners, which extras of crowdbot install."""
 
 from __future__ import annotations
 

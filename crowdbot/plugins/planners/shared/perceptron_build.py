@@ -93,7 +93,7 @@ def check_names(weights: Mapping[str, Array], parts: Sequence[str], where: str) 
     """Raise an error for weights of another network.
 
     Raises:
-        InputError: a part is missing, or there is one more.
+        InputError: a part is missing or unknown.
     """
     there = {name.partition(".")[0] for name in weights}
     if there != set(parts):

@@ -149,7 +149,7 @@ class Stuck:
         return np.concatenate([points, there[~inside & (away < _REACH)]])
 
     def _hold(self, pose: Pose, held: Pose) -> Pose:
-        """Return the pose of a robot that slips at a place; it starts to back off from there."""
+        """Return the pose of a robot that slips at an obstacle; backing off starts from there."""
         assert self._back_from is not None
         if self._slips:
             self._slip = (self._slip[0] + held.x - pose.x, self._slip[1] + held.y - pose.y)
@@ -162,7 +162,7 @@ class Stuck:
         return command
 
     def _watch(self, obs: Observation, pose: Pose, points: Array) -> Pose:
-        """Compare what the wheels say with what the scan says; return the pose without slip."""
+        """Compare wheel odometry with the scan; return the pose without slip."""
         if self._start is None:
             return self._restart(obs, pose, points)
         then, at, before, wide = self._start
@@ -275,7 +275,7 @@ def _mark_wide(points: Array, wide: Mask) -> None:
 def _votes(
     before: Array, wide: Mask, now: Array, ahead: float, aside: float, turn: float
 ) -> tuple[int, int, int]:
-    """Count points of an earlier scan by whether they say that the robot stands or has moved.
+    """Count points of an earlier scan that fit only a standing, or only a moving robot.
 
     Args:
         before: (K, 2) base frame of then, m.

@@ -192,11 +192,11 @@ def _truth(obs: Observation) -> Truth:
 
 
 def true_people(truth: Truth, pose: Pose) -> Array:
-    """Return (N, 5) number, x, y, vx, vy of all people as they stand around a pose.
+    """Return (N, 5) number, x, y, vx, vy of all people, placed relative to a pose.
 
     Args:
         truth: in the world frame.
-        pose: where the robot believes to be; people are placed relative to it.
+        pose: the robot's estimated pose.
     """
     turn = pose.yaw - truth.pose.yaw
     c, s = math.cos(turn), math.sin(turn)

@@ -110,7 +110,7 @@ class StickUser(SyntheticUser):
         return self._attend(own, t, draws[1], level, (ahead, aside))
 
     def _tiredness(self, t: float) -> float:
-        """Return from 0, rested, to 1."""
+        """Return the user's tiredness, from 0 (rested) to 1."""
         tired = self._tired
         return 0.0 if tired is None else -math.expm1(-(tired.time_on_task + t) / tired.tiring_time)
 

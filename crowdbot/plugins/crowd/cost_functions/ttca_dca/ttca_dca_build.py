@@ -108,7 +108,7 @@ def _lower_bound(
 
 
 def build(spec: TtcaDcaSpec) -> CompiledCost:
-    """Return the compile-time functions with this spec's parameters."""
+    """Return the compiled functions with this spec's parameters."""
     params = record_values(
         PARAMS,
         **spec.range.cost_params(),

@@ -117,7 +117,7 @@ class DeadEnds:
         return Detour(self._way - pose.yaw, room, escaping, mapped=True, beside=beside)
 
     def lose_way(self, t: float, distance: float) -> None:
-        """Search another path at once, since the straight one is blocked.
+        """Search for another path at once, since the straight one is blocked.
 
         Args:
             t: now, s.
@@ -127,7 +127,7 @@ class DeadEnds:
         self._nearest = (distance, t - 2.0 * self._spec.patience - _MAP_PERIOD)
 
     def _wait(self, period: float) -> None:
-        """Let time without progress count less while people walk nearby, who will be gone."""
+        """Count time without progress more slowly while people walk nearby: they will move on."""
         if self._moved_at is not None:
             x, y, since = self._moved_at
             self._moved_at = (x, y, since + _WAITING * period)

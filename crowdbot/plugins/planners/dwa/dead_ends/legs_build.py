@@ -35,7 +35,7 @@ class Legs:
         self._legs, self._next, self._since = legs, 0, t
 
     def old(self, t: float) -> bool:
-        """Return True if the path is so old that another may be better."""
+        """Return True if the path is old enough to search for a better one; ``t``: time now, s."""
         return t - self._since > _LASTS
 
     def velocity(self, pose: Pose, limits: RobotLimits) -> tuple[float, float]:

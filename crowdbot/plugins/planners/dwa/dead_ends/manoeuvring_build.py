@@ -43,9 +43,9 @@ class Manoeuvring:
         core: of the robot's outline, as `robot_outline_build.core_of`.
         p: parameters of `parameters_build`.
         limits: the robot's.
-        lidars: what they look at.
+        lidars: views of the robot's lidars.
         person_radius: disc that is kept clear around people, m.
-        reach: how far lidars are believed, m.
+        reach: range up to which lidar returns are used, m.
     """
 
     def __init__(
