@@ -71,7 +71,7 @@ def led_in(builts: Sequence[BuiltRun]) -> tuple[LedPeople, ...]:
 
 
 def relative_people(target: Target) -> Callable[[Array, Array], Array]:
-    """Return a function of robot and crowd state: a target's people as `PersonSight` has them."""
+    """Return a function from robot and crowd state to a target's people, as for `PersonSight`."""
 
     def seen(robot: Array, crowd: Array) -> Array:
         state = RobotState(*robot.tolist())

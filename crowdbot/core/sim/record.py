@@ -43,7 +43,7 @@ def record_robots(
     Args:
         setup: what to record, and where.
         builts: from `build_runs`, of all robots of the scenario; used up by this.
-        hosts: ask planners that have been reset, by robot; None builds those that ``setup`` chose.
+        hosts: of planners that have been reset, by robot; None builds those that ``setup`` chose.
 
     Raises:
         InputError: a robot would start in a wall, an obstacle, a person or another robot, or the
@@ -82,14 +82,14 @@ def record_robots(
 
 
 def _seen(blocks: Blocks, root: Any) -> dict[str, Observation]:
-    """Return the observations of all robots that go on; ``root``: the diagram's context."""
+    """Return the observations of all robots that have not ended, from the diagram's context."""
     found = {robot.given.built.name: robot.planner.observation(root) for robot in blocks.robots}
     return {name: obs for name, obs in found.items() if obs is not None}
 
 
 @contextmanager
 def _hosted(setup: RunSetup, built: BuiltRun) -> Iterator[PlannerHost]:
-    """Return the planner of a robot, watched over."""
+    """Return the host of a robot's planner, with a watchdog."""
     own = replace(setup, choice=setup.choice.of(built.name))
     with watchdog_of(own) as watchdog, hosted(own, built, watchdog) as host:
         yield host

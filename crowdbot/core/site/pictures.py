@@ -73,7 +73,7 @@ def _draw(expansion: Expansion, group: list[Scenario], registry: Registry, folde
 
 
 def _content(scenario: Scenario, registry: Registry) -> tuple[MapContent, dict[str, str]]:
-    """Return what is on the map, and facts; of hidden people neither shows anything."""
+    """Return the map's content and facts; without people and facts while the draws are hidden."""
     if scenario.hidden:
         return build_map_content(scenario, Realisation.nobody(), registry), {}
     people = population(scenario, registry).agents

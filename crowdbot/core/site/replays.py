@@ -22,7 +22,7 @@ _PLANNERS = 3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SiteReplay:
-    """One replay page: whose run, which one, and the page relative to the site."""
+    """One replay page: planner, choice of run, and the page's path relative to the site."""
 
     entry: str
     which: str

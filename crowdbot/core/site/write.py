@@ -151,7 +151,7 @@ def _index(
 
 
 def moment_text(text: str) -> str:
-    """Return a day or a moment of a round as people write it."""
+    """Return a date or time of a round as readable text."""
     if not text:
         return ""
     found = datetime.fromisoformat(text)

@@ -104,7 +104,7 @@ class Grouped:
 
     @cached_property
     def _usual(self) -> Mapping[str, Name]:
-        """Metric -> the variant that stands for it."""
+        """Return metric -> its headline variant."""
         first = {name[0]: name for name in reversed(self._table.names)}
         return {**first, **{name[0]: name for name in headline_names(self._table)}}
 

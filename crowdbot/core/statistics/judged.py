@@ -64,7 +64,7 @@ def judge(
 
 
 def loses_at_most(table: Table, name: Name, a: str, b: str, margin: float, *, alpha: float) -> bool:
-    """Return True if a mean loss of ``a`` beside ``b`` of more than ``margin`` is excluded.
+    """Return True if a mean loss of ``a`` against ``b`` of more than ``margin`` can be ruled out.
 
     A test of non-inferiority with chance alpha / 2 of a wrong True: that of `judge`, with the
     margin added to the gain of each pair.
@@ -138,7 +138,7 @@ def utility(
 
 
 def _worst(table: Table, name: Name, better: str, sides: tuple[_Side, _Side]) -> float:
-    """Return the worst value: the score's bound, else below what the planners have."""
+    """Return the worst value: the score's bound, else a value below or equal to all known ones."""
     scale = table.scale(name)
     bound = {"higher": scale.minimum, "lower": -scale.maximum}.get(better, -np.inf)
     if np.isfinite(bound):

@@ -129,7 +129,7 @@ def _random_signs(clusters: Clusters) -> Iterator[NDArray[np.int8]]:
 
 
 def _all_signs(count: int) -> NDArray[np.int8]:
-    """Return all flips of this many draws, up to the sign of the whole: the last stays."""
+    """Return all rows of signs of this many draws; the last sign is always +, by symmetry."""
     bits = np.arange(2 ** (count - 1))[:, np.newaxis] >> np.arange(count) & 1
     return (1 - 2 * bits).astype(np.int8)
 

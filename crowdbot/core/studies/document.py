@@ -177,7 +177,7 @@ def planner_text(study: Study, condition: StudyCondition, registry: Registry) ->
 
 
 def _problems(study: Study, tree: Node, registry: Registry) -> Iterator[Diagnostic]:
-    """Yield what does not exist, with its place."""
+    """Yield errors of planners, suites and scenarios that the study names, with their position."""
     for label, condition in study.spec.conditions.items():
         try:
             _check_planner(study, condition, registry)

@@ -80,7 +80,7 @@ def finished_run(progress: StudyProgress, step: Step) -> Path | None:
 
 
 def _planner(progress: StudyProgress, step: Step, registry: Registry) -> str:
-    """Return what ``--planner`` gets; a document with parameters is written beside the data."""
+    """Return the value of ``--planner``; a document with parameters is written beside the data."""
     condition: StudyCondition = progress.study.spec.conditions[step.condition]
     planner = condition.planner
     if not isinstance(planner, dict) or set(planner) == {"kind"}:
@@ -96,7 +96,7 @@ class Drive:
 
     Attributes:
         words: of its command.
-        url: of its page, once it said so; empty before, and of a simulation.
+        url: of its page, once it has printed it; empty before, and of a simulation.
         lines: the last lines of its messages.
     """
 

@@ -37,7 +37,7 @@ def condition_order(study: Study, participant: str) -> list[str]:
 
 
 def _square(order: str, n: int) -> list[list[int]]:
-    """Return rows of the numbers below n."""
+    """Return the rows of an order method; each is a permutation of 0 to n - 1."""
     if order == "fixed":
         return [list(range(n))]
     return williams(n) if order == "williams" else latin_square(n)

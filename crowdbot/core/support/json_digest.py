@@ -1,4 +1,4 @@
-"""Hash of a JSON document, however its keys are ordered."""
+"""Hash of a JSON document, independent of the order of its keys."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ def try_lock(handle: int, folder: Path) -> Literal["locked", "taken", "unguarded
         folder: what the lock guards, for the warning.
 
     Raises:
-        OSError: neither is known.
+        OSError: the file cannot be locked for another reason.
     """
     try:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -13,8 +13,8 @@ _TABLE = "confusables.txt"
 def looks(name: str) -> frozenset[str]:
     """Return the keys of a name; two names look alike if they share one.
 
-    Letters of other scripts, capitals, digits, blanks and compatibility forms do not make a
-    difference that one sees.
+    Differences that are hard to see are ignored: similar letters of other scripts, capitals,
+    digits, blanks and compatibility forms.
     """
     plain = unicodedata.normalize("NFKC", name)
     return frozenset(

@@ -130,7 +130,7 @@ class RecordPointer(types.CPointer):
 
     @property
     def mangling_args(self) -> tuple[str, tuple[Any, ...]]:
-        """Name of the type in symbols; numba's own would spell out all fields."""
+        """Return the type's name in symbols; numba's own would spell out all fields."""
         return type(self).__name__, (self.dtype,)
 
 
@@ -143,12 +143,12 @@ def _row(_: Any, builder: Any, signature: Any, values: Any) -> Any:  # noqa: ARG
 
 
 def record_argument(record: RecordType[Any]) -> Any:
-    """Numba's type of a record."""
+    """Return numba's type of a record."""
     return from_dtype(cast(Any, record))
 
 
 def rows_argument(record: RecordType[Any]) -> Any:
-    """Numba's type of a pointer to records."""
+    """Return numba's type of a pointer to records."""
     return RecordPointer(record_argument(record))  # type: ignore[no-untyped-call]
 
 
@@ -217,7 +217,7 @@ if TYPE_CHECKING:
         """Return the record at a pointer, or at the beginning of an array."""
 
     def as_rows(source: Any, record: RecordType[T]) -> Rows[T]:
-        """The records at a pointer, or those of a contiguous array, whose length is then known.
+        """Return the records at a pointer, or in a contiguous array, whose length is then known.
 
         The memory is the caller's, and has to outlive them.
         """

@@ -320,7 +320,7 @@ def _checked(name: str, value: Any) -> Any:
 
 
 def _names_of(columns: TableColumns | None) -> TableColumns:
-    """Names of columns by table.
+    """Return names of columns by table.
 
     Raises:
         InputError: there is no such table.

@@ -1,4 +1,4 @@
-"""Columns that several columns of a flattened message make: stamps and headings.
+"""Combine columns of flattened messages into one: stamps and headings.
 
 Exports of bags split a stamp into seconds and nanoseconds, and give an orientation as a quaternion.
 """
@@ -44,7 +44,7 @@ def joined(
     cells: Callable[[int], Cells],
     known: Iterable[str],
 ) -> tuple[RawTable, set[int]]:
-    """Return the table with a time and a heading made of several columns, if it has none.
+    """Return the table with a time and a heading combined from several columns, if it has none.
 
     Args:
         table: what was found under our names; its header has all names as the file spells them.

@@ -212,7 +212,7 @@ class Ids:
 
 
 def as_number(cell: Any) -> float:
-    """Return the number in a cell; NaN if it is empty or says so. A decimal comma is one, too.
+    """Return the number in a cell, also with a decimal comma; NaN if the cell stands for no value.
 
     Raises:
         ValueError, TypeError: it is something else.

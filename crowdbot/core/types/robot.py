@@ -92,7 +92,7 @@ class RobotModel:
 
     @property
     def wheels(self) -> tuple[float, float]:
-        """Radius and track of the wheels that odometry counts, m."""
+        """Return radius and track of the wheels that odometry counts, m."""
         drive = self.drive
         radius = drive.wheel_radius if isinstance(drive, HolonomicDrive) else drive.command_radius
         return radius, drive.track

@@ -30,7 +30,7 @@ class Pinhole:
 
     @property
     def centre(self) -> tuple[float, float]:
-        """Column and row of the optical axis, counted from the centre of the first pixel."""
+        """Return column and row of the optical axis, from the centre of the first pixel."""
         return 0.5 * (self.width - 1), 0.5 * (self.height - 1)
 
 

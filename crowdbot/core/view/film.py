@@ -49,7 +49,7 @@ class FilmedRun:
 
     @property
     def end(self) -> float:
-        """Time of the last sample, s."""
+        """Return the time of the last sample, s."""
         return float(self.tracks[0].t[-1])
 
     def times(self, first: float, last: float | None, rate: float, speed: float) -> list[float]:

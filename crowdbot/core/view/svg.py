@@ -77,7 +77,7 @@ def _form(look: Style) -> str:
 
 
 def _colours(palette: Mapping[str, str]) -> list[str]:
-    """Fill and stroke of each role."""
+    """Return fill and stroke of each role, as CSS."""
     return [
         f".view .{role} {{ fill: {palette[look.fill] if look.fill else 'none'};"
         f"{f' stroke: {palette[look.stroke]};' if look.stroke else ''} }}"

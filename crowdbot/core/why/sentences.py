@@ -31,7 +31,7 @@ def what_happened(run: Trajectories, moment: DecisiveMoment, reason: str = "") -
     """Return the event, and the motion of the person and the robot, in words.
 
     Args:
-        reason: why the run ended; told if the planner failed.
+        reason: why the run ended; included if the planner failed.
     """
     sample = max(0, int(np.searchsorted(run.t, moment.t, side="right")) - 1)
     happened = moment.cause.happened.format(stood=moment.stood)
@@ -85,7 +85,7 @@ def _robot(run: Trajectories, sample: int) -> str:
 
 
 def _seen(scans: Iterable[ReplayScan], t: float) -> Iterator[str]:
-    """Yield the nearest returns of sensors of distances at their last reading before."""
+    """Yield sentences on the nearest returns of range sensors, from their last reading before t."""
     found = sorted(_returns(scans, t))
     for _, text in found[:_NEAREST]:
         yield text

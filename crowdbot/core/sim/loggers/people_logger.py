@@ -53,7 +53,7 @@ class PeopleLogger(LeafSystem):
 def add_people_logger(
     builder: DiagramBuilder, crowd: CrowdSystem | None, log: RunLog, rate: float
 ) -> PeopleLogger:
-    """Add it to a diagram, after all monitors of robots."""
+    """Add a people logger to a diagram, after all monitors of robots."""
     logger = PeopleLogger(log, crowd, rate)
     builder.AddNamedSystem("people_logger", logger)
     if crowd is not None:

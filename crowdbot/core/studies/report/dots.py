@@ -16,7 +16,7 @@ def dots(findings: Sequence[StudyFinding], titles: Sequence[str], label: str) ->
     Args:
         findings: of one score, by condition; at least one has a value.
         titles: of the conditions.
-        label: text for readers who do not see it.
+        label: text alternative for screen readers.
     """
     numbers = [v for f in findings for v in f.values.values()]
     numbers += [x for f in findings for x in (f.mean.low, f.mean.high) if x is not None]

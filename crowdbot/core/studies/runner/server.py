@@ -81,7 +81,7 @@ class _Handler(BaseHTTPRequestHandler):
         self._send(303, "", "text/plain", Location="./")
 
     def log_message(self, format: str, *args: Any) -> None:
-        """Say nothing: addresses hold the token."""
+        """Log nothing, since addresses contain the token."""
 
     def _reply(self, ask: Callable[[], object]) -> str:
         try:

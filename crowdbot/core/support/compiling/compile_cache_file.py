@@ -107,7 +107,7 @@ def check_all_cache_files() -> None:
 
 
 class _Damaged(Exception):  # noqa: N818 - a state of a file, told by `_say_damaged`
-    """The file was cut, changed or exchanged, or others may do so."""
+    """A cache file was truncated, changed or exchanged, or other users may write it."""
 
 
 def _say_damaged(folder: str, file: str) -> None:

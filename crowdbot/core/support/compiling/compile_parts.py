@@ -60,7 +60,10 @@ class _Cache(FunctionCache):
         )
 
     def load(self, sig: Any, context: Any, as_part: bool) -> Any:
-        """As numba's, without what only compilation needs, which saves a tenth of a second."""
+        """Load a function as numba does, without data that only compilation needs.
+
+        This saves a tenth of a second.
+        """
         self._as_part = as_part
         rtsys.initialize(context)
         with self._guard_against_spurious_io_errors():
@@ -123,7 +126,7 @@ class _Compiler(_FunctionCompiler):
 
 
 class KernelDispatcher(CPUDispatcher):
-    """As numba's, but compiles functions called from compiled code as parts only."""
+    """Numba's dispatcher, but compiles functions called from compiled code as parts only."""
 
     def __init__(
         self,

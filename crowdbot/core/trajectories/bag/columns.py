@@ -20,7 +20,7 @@ class Columns:
         log: (K,) times of recording, ns since 1970.
         stamp: (K,) times of the headers, ns; 0 where there is none.
         message: (K,) number of the message in its topic.
-        row: (K,) numbers of the rows from which they were made.
+        row: (K,) numbers of the original rows.
         frame: (K,) names of frames, without a leading slash; empty where unknown.
         xyz: (K, 3) positions in that frame, m.
         values: further columns (K,) by name, NaN where unknown.

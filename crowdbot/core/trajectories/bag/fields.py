@@ -56,7 +56,7 @@ def place_of(item: Any, depth: int = _DEPTH) -> BagPose | None:
 
 
 def _only_place(item: Any) -> Any:
-    """Return the one part of a message whose type is a place, whatever its name; None if not."""
+    """Return the only part of a message that is a position or pose; None if none or several are."""
     parts = [getattr(item, name) for name in getattr(item, "__dataclass_fields__", {})]
     kinds = [str(getattr(part, "__msgtype__", "")).rpartition("/")[2] for part in parts]
     found = [part for part, kind in zip(parts, kinds, strict=True) if kind in _PLACE_TYPES]

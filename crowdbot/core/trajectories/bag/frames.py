@@ -63,7 +63,7 @@ class FrameTree:
 
     Args:
         edges: as they were sent.
-        by_stamp: True if their stamps are their times, False if the times of recording are.
+        by_stamp: True to use their stamps as times, False to use the times of recording.
     """
 
     def __init__(self, edges: Iterable[Edge], *, by_stamp: bool) -> None:

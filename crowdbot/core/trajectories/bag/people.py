@@ -85,9 +85,10 @@ def _items(message: Any) -> Sequence[Any] | None:
 
 
 def _only_list(message: Any) -> Sequence[Any] | None:
-    """Return the list of bodies of a message with names of its own; None without, or of several.
+    """Return the list of bodies in a message with unknown field names; None if none or several.
 
-    Lists are told by their items, which have places; a message may have other lists, of texts.
+    Lists are recognised by their items, which have positions; a message may have other lists, of
+    texts.
     """
     fields = getattr(message, "__dataclass_fields__", {})
     values = [getattr(message, name) for name in fields]
@@ -129,7 +130,7 @@ def _rows(path: Path, topic: str, message: Any, log: int, number: int) -> Iterat
 
 
 def _is_table(message: Any) -> bool:
-    """Return True for arrays of numbers, one of each for a person, as crowdbot writes them."""
+    """Return True for arrays with one number per person, as crowdbot writes them."""
     return all(hasattr(getattr(message, n, None), "__len__") for n in _TABLE)
 
 

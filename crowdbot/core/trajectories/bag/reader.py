@@ -43,7 +43,7 @@ def messages(path: Path, topics: set[str]) -> Iterator[BagMessage]:
 
 
 def topic_fields(path: Path) -> dict[str, set[str]]:
-    """Return the topics of a bag -> the fields of their messages; empty where nothing says them.
+    """Return the topics of a bag -> the fields of their messages; empty where they are unknown.
 
     Raises:
         InputError: it cannot be read.
@@ -92,7 +92,7 @@ def _raw_messages(path: Path, reader: Any, chosen: list[Any]) -> Iterator[tuple[
 
 
 def _not_readable(path: Path, error: Exception) -> Exception:
-    """Return what to raise for an error of the library."""
+    """Return the exception to raise for an error of the library."""
     if isinstance(error, MemoryError):
         return error
     text = " ".join((str(error) or type(error).__name__).split())
@@ -174,7 +174,7 @@ def _remedy(text: str) -> str:
 
 
 def _check_layout(path: Path, reader: Any, connection: Any) -> None:
-    """Refuse a topic whose messages nothing describes."""
+    """Refuse a topic whose message type has no known definition."""
     if connection.msgtype in reader.typestore.fielddefs:
         return
     package = connection.msgtype.partition("/")[0]

@@ -53,7 +53,7 @@ def bag_tables(
         robot: topic with the pose: ``Odometry``, ``PoseStamped``, ``Pose`` and similar; or ``/tf``,
             ``/tf:FRAME``.
         people: topic with a list of people, or a ``PoseArray``.
-        same_frame: True to take frames of different names for one.
+        same_frame: True to treat frames of different names as the same.
 
     Raises:
         InputError: it cannot be read, a message has no pose or no list, or frames differ.
@@ -151,7 +151,7 @@ class _Reading:
         return [rows[i] for i in people.row]
 
     def _by_stamp(self, topics: dict[str, Columns]) -> bool:
-        """Return True to take stamps; times of recording replace them in the topics, otherwise."""
+        """Return True if stamps are used; else replace them by times of recording in the topics."""
         if len(topics) == 2:
             both = [topics[name] for name in (self._robot, self._people) if name is not None]
             by_stamp = common_clock(both[0], both[1], self._notes)
@@ -221,7 +221,7 @@ class _Reading:
 
     # -------------------------------------------------------------------------- tables
     def _finite(self, robot: Columns) -> Columns:
-        """Return the poses of the robot that are somewhere."""
+        """Return the robot's rows with finite poses."""
         finite = np.asarray(np.isfinite(robot.xyz[:, :2]).all(axis=1))
         if not finite.any():
             raise InputError(f"{self._path}: no position of the robot is finite")

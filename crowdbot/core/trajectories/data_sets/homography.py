@@ -19,7 +19,7 @@ from crowdbot.errors import InputError
 Homography = ArrayLike | Path | str
 #: Columns that do not hold in metres; they are derived again.
 _DERIVED = ("theta", "v", "w", "vx", "vy")
-#: Share of its size from which on a row counts as one that no others make up.
+#: Residual, relative to its size, above which a row counts as linearly independent of others.
 _OWN = 1e-9
 _WANTED = (
     "an invertible matrix of 3 x 3 numbers, from positions in the file to metres, or metres per "
@@ -29,7 +29,7 @@ _WANTED = (
 
 @dataclass(frozen=True, slots=True)
 class VideoScale:
-    """Scale of numbers in tables of others, to metres and seconds; None: as the tables say.
+    """Conversion of positions and frame numbers to metres and seconds; None: as the tables state.
 
     Attributes:
         homography: the rows of a matrix (3, 3) from positions to metres.
@@ -73,7 +73,7 @@ def matrix_of(homography: Homography) -> Array:
     """Return the matrix (3, 3) that is given as numbers, as one number, or as a file.
 
     Raises:
-        InputError: it is neither, or the file cannot be read; the message has its line.
+        InputError: it is none of these, or the file cannot be read; the message has its line.
     """
     if isinstance(homography, Path | str):
         return _matrix_in(Path(homography))
@@ -130,7 +130,7 @@ def _row(path: Path, number: int, words: Sequence[str]) -> list[float]:
 
 
 def _dependent(matrix: Array) -> int | None:
-    """Return the first row that others make up, in spite of rounding; None if there is none."""
+    """Return the first row that depends linearly on others, up to rounding; None if none does."""
     scaled = matrix / np.maximum(np.abs(matrix).max(axis=0), np.finfo(float).tiny)
     above = list[Array]()
     for k, row in enumerate(scaled):
@@ -159,7 +159,7 @@ def projected(path: Path | str, matrix: ArrayLike, places: Array) -> Array:
 
 
 def in_metres(table: RawTable, homography: Homography | None) -> RawTable:
-    """Return a table with x and y in metres, without what is derived from them.
+    """Return a table with x and y in metres, without velocities and headings.
 
     Raises:
         InputError: see `matrix_of` and `projected`.

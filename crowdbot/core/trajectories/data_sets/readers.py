@@ -144,7 +144,7 @@ def eth_ucy_table(
 
 
 def _boxes(last: str) -> str:
-    """Return what rows of ten columns are, by their last cell, and what to write instead."""
+    """Describe rows of ten columns (bounding boxes), and how to convert them, for an error."""
     of_sdd = last.strip("\"'").isalpha()
     names, middle = (_SDD, "(xmin + xmax)/2, (ymin + ymax)/2") if of_sdd else (_MOT, _FEET)
     return (

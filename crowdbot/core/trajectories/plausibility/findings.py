@@ -242,7 +242,7 @@ def _off(x: Array, y: Array, vx: Array, vy: Array) -> float:
 
 
 def _recorded_speeds(run: Trajectories) -> Iterator[str]:
-    """Check that speeds agree with the way of a second: missing velocities, km/h, mm/s."""
+    """Check that speeds agree with the distance moved in a second: missing values, km/h, mm/s."""
     if len(run.t) < _FEW:
         return
     for name, track in (("the robot", run.robot), ("people", run.agents)):
@@ -266,7 +266,7 @@ def _recorded_speeds(run: Trajectories) -> Iterator[str]:
 
 
 def _of_a_second(t: Array, x: Array, y: Array, speed: Array) -> tuple[Array, Array]:
-    """Return net ways of a second, per second, and the mean speed meanwhile, m/s."""
+    """Return net displacements over one second, in m/s, and the mean recorded speeds in it, m/s."""
     steps = min(max(1, round(1.0 / float(np.median(np.diff(t))))), len(t) - 1)
     dt = (t[steps:] - t[:-steps]).reshape(-1, *([1] * (x.ndim - 1)))
     ways = np.hypot(x[steps:] - x[:-steps], y[steps:] - y[:-steps]) / dt

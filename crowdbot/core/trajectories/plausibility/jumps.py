@@ -50,7 +50,7 @@ def findings(
 
 
 def nowhere(x: Array, y: Array) -> Mask:
-    """Return places that programs write for none: twice 0, -1 or -9999, 999 or 1e6.
+    """Return a mask of places that stand for missing ones: x = y = 0, -1, or an integer beyond 99.
 
     Args:
         x, y: places of one shape, m.
@@ -60,7 +60,7 @@ def nowhere(x: Array, y: Array) -> Mask:
 
 
 def _second(moving: Array) -> float:
-    """Return the speed of the fastest of a few steps but one."""
+    """Return the second-highest speed of a few steps."""
     return float(np.sort(moving)[-2])
 
 
@@ -69,7 +69,7 @@ def _meaning(name: str) -> str:
 
 
 def _scored(speeds: Array) -> str:
-    """Say what metrics do with jumps of such speeds, m/s."""
+    """Describe how metrics treat jumps of such speeds, m/s."""
     slow = np.count_nonzero(speeds <= _TELEPORT)
     if not slow:
         return "Metrics take steps faster than 10 m/s (jump_speed) for teleports and leave them out"

@@ -49,7 +49,7 @@ def _advice(step: float, speed: float | None) -> str:
 
 
 def _ticks(step: float, speed: float | None) -> tuple[str, float]:
-    """Return what times count, and how many there are in a second."""
+    """Return the unit of times, and the number of units per second."""
 
     def off(rate: float) -> float:
         of_step = abs(math.log(step / rate / _USUAL_STEP))

@@ -20,7 +20,7 @@ _FEW, _TURNING = 5, 0.02
 
 
 def bodies(run: Any) -> Iterator[str]:
-    """Yield a sentence for radii and masses that no body has.
+    """Yield a sentence for implausible radii and masses.
 
     Args:
         run: the trajectories.
@@ -47,7 +47,7 @@ def _weight(name: str, mass: float, most: float) -> Iterator[str]:
 
 
 def creeping(t: Array, name: str, x: Array, y: Array) -> Iterator[str]:
-    """Yield a sentence for bodies that go one way, slower than anyone.
+    """Yield a sentence for bodies that move straight on, but slower than bodies usually do.
 
     Args:
         t: times (N,), s.
