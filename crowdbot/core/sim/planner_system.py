@@ -213,7 +213,10 @@ class PlannerSystem(LeafSystem):
         values.get_mutable_value(self._desired)[:] = self._desire(slewed_v, slewed_w, slewed_vy)
 
     def _ask(self, context: Context, t: float) -> Command:
-        """The planner's command; one that fails ends its robot, and with the only one the run."""
+        """Return the planner's command.
+
+        If the planner fails, end the robot, and with the only robot the run.
+        """
         seen = self._seen(context, t)
         try:
             hosted = self._host.step(seen)

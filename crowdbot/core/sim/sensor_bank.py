@@ -187,7 +187,7 @@ class SensorBank(LeafSystem):
         return self._images[name].reading(self._scene, float(bank[slot.stamp]), bank[slot.values])
 
     def _rng(self, name: str, t: float) -> np.random.Generator:
-        """Return the random generator of one reading, even if it is not used."""
+        """Return the random generator of one reading; a shared idle one without a random stream."""
         stream = self._readers[name].stream
         return self._idle if stream is None else stream.at(round(t * TICKS_PER_SECOND))
 
@@ -244,7 +244,7 @@ class SensorBank(LeafSystem):
         return rows
 
     def _show_others(self, context: Context) -> None:
-        """Show where the other robots are."""
+        """Update the other robots' poses in the scene."""
         states = (port.Eval(context)[:3].tolist() for port in self._states)
         ends = self._others.endings
         self._poses = [None if e.gone else Pose(*p) for e, p in zip(ends, states, strict=True)]

@@ -104,7 +104,7 @@ def _by_rule(pair: Ranked) -> Standing:
 
 
 def _by_first(*aspects: Aspect) -> Callable[[Ranked], Standing]:
-    """Return a rule by which the first aspect with a significant difference decides."""
+    """Return a rule that orders pairs by their first aspect with a significant difference."""
 
     def decide(pair: Ranked) -> Standing:
         for aspect in aspects:

@@ -266,7 +266,7 @@ class AxisLabels:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class _Attempts:
-    """A planner's attempts, row by row.
+    """A planner's attempts to run each row.
 
     Attributes:
         run: (n,) True if there is a run; ``lost``: if it could not be made.

@@ -78,7 +78,7 @@ class Question:
         text: the question; may be empty.
         marks: values and their labels, in order.
         ends: words for both ends of the scale; empty for a choice.
-        optional: True if it may stay open.
+        optional: True if it may stay unanswered.
     """
 
     name: str

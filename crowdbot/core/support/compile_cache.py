@@ -83,7 +83,7 @@ def lock_file() -> Path:
 
 
 def is_readable_only(py_file: str) -> bool:
-    """Return True for one of crowdbot's own functions in a planner's process."""
+    """Return True for crowdbot's own functions in a planner's process, which may not write them."""
     return bool(os.environ.get(SIMULATORS)) and Path(py_file).is_relative_to(_PACKAGE)
 
 

@@ -192,7 +192,7 @@ def _as_rows(_: Any, source: Any, record: Any) -> tuple[Any, Any]:
 
 
 def _at(made: Any) -> Any:
-    """Return the code that makes a pointer of an address."""
+    """Return the code that converts an address to a pointer."""
 
     def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:  # noqa: ARG001
         number = builder.fptosi(values[0], context.get_value_type(types.int64))

@@ -79,7 +79,7 @@ def _what_it_is(content: bytes) -> str:
 
 
 def _stands_for(content: bytes) -> str:
-    """Return why a text is not the file that was wanted, or an empty text."""
+    """Return what a file contains in place of the wanted text, or "" if nothing is suspicious."""
     begin = content[:200].removeprefix(b"\xef\xbb\xbf").lstrip().lower()
     if begin.startswith(b"version https://git-lfs"):
         return "it is a pointer of Git LFS; 'git lfs pull' fetches the file"

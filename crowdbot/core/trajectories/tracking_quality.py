@@ -49,7 +49,7 @@ class TrackingQuality:
 
 
 class _Instant(NamedTuple):
-    """One drawing beside the truth, in the robot's base frame."""
+    """One drawing of tracks beside the true people, in the robot's base frame."""
 
     numbers: Array
     people: NDArray[np.int64]

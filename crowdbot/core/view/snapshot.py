@@ -21,7 +21,7 @@ _BODY = 0.4  # m, people so far outside are seen in part
 
 
 def sample_at(run: Trajectories, t: float) -> int:
-    """Return the last sample until a time, s."""
+    """Return the index of the last sample at or before a time, s."""
     return max(0, int(np.searchsorted(run.t, t + 1e-9, side="right")) - 1)
 
 

@@ -43,7 +43,7 @@ class WallContactCount(RobotMetric[specs.WallContactCountSpec]):
         return self.factory.ok("recorded", (run.contacts.agent == -1).sum())
 
     def geometric(self, run: Trajectories) -> Score:
-        """Score contacts by the geometry of walls and outline."""
+        """Score contacts between the robot's outline and walls, computed from its motion."""
         tol = self.spec.contact_tol
         try:
             gap = wall_gap(run)

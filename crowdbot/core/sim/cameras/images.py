@@ -132,7 +132,7 @@ class Images:
         return Reading(stamp, depth, self._colour)
 
     def _begin(self, stamp: float, view: Array) -> None:
-        """Drop the latest image, so that its warm memory is reused."""
+        """Drop the latest image, so that its memory, still in the processor's cache, is reused."""
         self._stamp, self._view = stamp, view.copy()
         self._depth = self._colour = None
 

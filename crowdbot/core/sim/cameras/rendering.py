@@ -292,7 +292,7 @@ def _render_camera(camera: Pinhole) -> ColorRenderCamera:
 
 
 def _places(scene: Scene) -> list[RigidTransform]:
-    """Return poses of legs and trunks, person by person; absent ones are under the floor."""
+    """Return poses of legs and trunks, person by person; absent people are below the floor."""
     turns = [RotationMatrix.MakeZRotation(yaw) for yaw in scene.headings.tolist()]
     centres = scene.cylinders[: PARTS * len(turns), :2].reshape(-1, PARTS, 2).tolist()
     bodies = [

@@ -53,7 +53,7 @@ class _Near(NamedTuple):
 
 
 class WallContacts:
-    """Monitors one robot; needs its state at every tick at which it may be near a wall."""
+    """Monitors one robot's contacts with walls, at every tick at which it may be near one."""
 
     def __init__(self, parts: EnvironmentParts, robot: RobotModel, log: RunLog) -> None:
         self._walls, self._pillars = obstacles(parts, robot.height)

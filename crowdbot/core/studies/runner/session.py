@@ -92,7 +92,7 @@ class RunnerSession:
         self._progress.finish(step, content)
 
     def _advance(self) -> Step | None:
-        """Finish the present step if it is a drive that is done; return the step that is next."""
+        """Finish the present step if it is a completed drive; return the next step."""
         step = self._progress.current()
         while step is not None and step.kind in _DRIVEN and finished_run(self._progress, step):
             if self._drive is not None and self._drive.ended() is None:

@@ -30,7 +30,7 @@ class CompiledStateLocator(UserProvidedCacheLocator):
             self._cache_path = str(Path(os.environ[SIMULATORS], inner))
 
     def ensure_cache_path(self) -> None:
-        """Check that the folder can be written, unless it is only read."""
+        """Check that the folder can be written, unless this process only reads it."""
         if not self._reads:
             super().ensure_cache_path()  # type: ignore[no-untyped-call]
 

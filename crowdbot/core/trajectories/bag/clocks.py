@@ -88,7 +88,7 @@ def tell_disorder(topics: Mapping[str, Columns], notes: list[str]) -> None:
 
 
 def common_clock(robot: Columns, people: Columns, notes: list[str]) -> bool:
-    """Return True if the stamps of two topics are of one clock; else use recording times.
+    """Return True if the stamps of two topics share a clock; else use recording times.
 
     The delays between stamps and recording are compared at equal recording times.
     """

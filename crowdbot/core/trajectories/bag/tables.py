@@ -173,7 +173,7 @@ class _Reading:
 
     # ---------------------------------------------------------------------- transforms
     def _transforms(self, topics: dict[str, Columns]) -> list[Edge]:
-        """Return the transforms of the bag, if they are needed; and those of odometry."""
+        """Return the bag's transforms, including those of odometry, if they are needed."""
         frames = {frame for columns in topics.values() for frame in columns.frame} - {""}
         alone = self._robot is None and frames <= {"map", "world", "odom"}
         same = self._same_frame or (self._robot is not None and len(frames) <= 1)

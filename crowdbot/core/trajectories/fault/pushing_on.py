@@ -65,7 +65,7 @@ def _speed_before(run: Trajectories, contacts: PersonContacts, k: int, jump_spee
 def _too_much(
     closing: Array, since: Array, lengths: Array, presses: Mask, speed: float, rule: FaultRule
 ) -> bool:
-    """Return True if the robot presses faster than it may, or farther than the margin."""
+    """Return True if the robot presses faster than the rule allows, or farther than the margin."""
     counts = presses & (since > rule.reaction)
     allowed = np.maximum(0.0, speed - rule.braking * (since - rule.reaction)) + rule.speed
     way = float((closing * lengths)[counts].sum())

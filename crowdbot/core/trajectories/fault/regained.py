@@ -14,7 +14,7 @@ from crowdbot.core.types.arrays import Array, Indices
 def regained(
     run: Trajectories, evasion: Evasion, agents: Indices, within: float, jump_speed: float
 ) -> Array:
-    """Return by how much accelerations away from the robot only regain speed (N-1, M), m/s².
+    """Return the part of accelerations away from the robot that only regains speed (N-1, M), m/s².
 
     Another person or a wall has slowed or deflected the person; in the time after it they regain
     the velocity of the last sample before it. What they do beyond that counts as before.

@@ -80,7 +80,7 @@ def completed(
 
 
 def _not_people(header: Sequence[str], cells: Callable[[str], Cells]) -> tuple[set[int], list[str]]:
-    """Return the places of columns of kinds, and a sentence if they hold others than people."""
+    """Return indices of columns with object types, and notes on types other than people."""
     places = {i for i, column in enumerate(header) if column.lower() in _KINDS}
     found = {i: sorted({str(cell).strip() for cell in cells(header[i])}) for i in places}
     notes = [

@@ -40,7 +40,7 @@ def refuse_exchanged(table: RawTable, frames: Array) -> None:
         frames: (K,).
 
     Raises:
-        InputError: that is so, and they move faster than anyone.
+        InputError: they seem exchanged, and people move faster than is possible.
     """
     columns = {name: table.numbers(name) for name in ("id", "x", "y")}
     found = exchanged.steps({**columns, "frame": frames})

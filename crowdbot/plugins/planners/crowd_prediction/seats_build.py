@@ -71,7 +71,7 @@ def leave_seats(
     places: Array, speeds: Array, pulls: Array, seats: Indices, slips: Array,
     times: tuple[float, int], out: Array,
 ) -> None:  # fmt: skip
-    """Write where the seated people are after each step; others are left as they are.
+    """Write the positions of people with a simulated agent after each step; leave others as is.
 
     After the last decision they keep their velocity.
 

@@ -267,7 +267,7 @@ def _price(
     part: tuple[int, int],
     need: tuple[float, float, float],
 ) -> float:
-    """Write the costs of the lanes; return the least of all.
+    """Write the costs of the lanes; return the least cost so far.
 
     Args:
         around: the surroundings.

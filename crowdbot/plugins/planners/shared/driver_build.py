@@ -75,7 +75,7 @@ class VelocityPlanner(ABC):
 
         Args:
             obs, scene, wish: as for `velocity`.
-            error: angle from the heading to the wish, rad.
+            error: angle from the heading to the desired velocity, rad.
         """
         assert self.limits is not None
         chosen = self.velocity(obs, scene, wish)

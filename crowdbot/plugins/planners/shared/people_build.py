@@ -173,7 +173,7 @@ def with_discs(points: Array, people: Array, radius: float) -> Array:
 
 @kernel
 def carry(points: Array, velocities: Array, people: Array, going: Array, radius: float) -> None:
-    """Give points on people's discs the velocities of the people (K, 2), in place."""
+    """Give points on people's discs the velocities of these people (K, 2), in place."""
     for i in range(points.shape[0]):
         best = radius + 0.05
         for k in range(people.shape[0]):

@@ -70,7 +70,7 @@ def wish(
 
 
 def full(deflection: float) -> float:
-    """Clip a deflection to the stick's range."""
+    """Clip a deflection to -1..1."""
     return min(1.0, max(-1.0, deflection))
 
 

@@ -65,7 +65,7 @@ class Manoeuvring:
         islands(np.ones((1, 2)), _LINK, _SMALL)
 
     def forget(self) -> None:
-        """Drop the manoeuvre, since the robot makes progress again."""
+        """Drop the manoeuvre, since the robot advances again."""
         self._map, self._alone = _NONE, _NONE
         self._legs, self._held = Legs(), 0.0
         self._mapped_at = -math.inf
