@@ -133,7 +133,7 @@ def _others(
     k: int,
     contacts: RobotContacts | None,
 ) -> OtherRobots:
-    """Return all robots but robot k, as its blocks know them."""
+    """Return the data about all robots but robot k that the systems of robot k need."""
     if contacts is None:
         return OtherRobots(robots[k].ending)
     rest = [i for i in range(len(robots)) if i != k]

@@ -1,4 +1,4 @@
-"""The other robots of a run, as the blocks of one robot know them."""
+"""The other robots of a run: the data that the systems of one robot need about them."""
 
 from __future__ import annotations
 

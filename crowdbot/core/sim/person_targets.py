@@ -19,7 +19,7 @@ from crowdbot.dsl.scenario.seeds import stream_seed
 
 
 def with_targets(builts: Mapping[str, BuiltRun], people: Realisation) -> dict[str, BuiltRun]:
-    """Return runs of robots whose tasks know their persons; others are as before.
+    """Return runs whose tasks have the data of their persons; other runs are unchanged.
 
     Args:
         builts: from `build_runs`, of all robots of a scenario.

@@ -66,7 +66,7 @@ class _Statistic:
         self._seen = abs(float(self._of(np.ones((1, len(sums)), np.int8))[0]))
 
     def reached(self, signs: NDArray[np.int8]) -> NDArray[np.bool_]:
-        """Return, for each row of signs (flips, draws), if its statistic is as large as seen."""
+        """Return a mask of rows of signs whose statistic is at least as large as observed."""
         found = np.abs(self._of(signs[:, self._order]))
         return np.asarray(found >= self._seen * (1.0 - _ROUNDING))
 

@@ -1,4 +1,4 @@
-"""A hint to the processor in compiled code: memory that is needed soon."""
+"""A prefetch hint for compiled code: load memory that is needed soon."""
 # Numba reads the arguments of intrinsics from their definitions.
 
 from __future__ import annotations

@@ -199,7 +199,7 @@ def _with_heights(value: Any) -> Any:
 
 
 def _is_of_place(shape: Any, properties: dict[str, Any], name: str, aside: Counter[str]) -> bool:
-    """Return True if a feature is floor or solid; count others that one may have expected.
+    """Return True if a feature is floor or solid; count others that may have been meant as such.
 
     Raises:
         InputError: its kind is a misspelled one.

@@ -97,7 +97,7 @@ def _write(
     sectors: int, bodies: Array, nearest: Array, which: NDArray[np.int64],
     found: NDArray[np.float32],
 ) -> None:  # fmt: skip
-    """Write all but goal and motion; what is left of ``found`` stays.
+    """Write all values but goal and motion to ``found``; the rest of it is unchanged.
 
     Args:
         points: (W, B, 2) ends of beams in the robot's frame, m.

@@ -68,7 +68,7 @@ def _write_scans(
 
     Args:
         kept: (W, K, S) the last scans, changed.
-        found: (W, N) output; what is left of it stays.
+        found: (W, N) output; the rest of it is unchanged.
     """
     scans, sectors = kept.shape[1], kept.shape[2]
     for w in range(now.shape[0]):

@@ -42,7 +42,7 @@ def _write_tracks(
     people: Array, pose: Array, cos: Array, sin: Array, most: float, fastest: float, away: Array,
     which: Indices, found: NDArray[np.float32],
 ) -> None:  # fmt: skip
-    """Write the rows of the nearest people; what is left of ``found`` stays.
+    """Write the rows of the nearest people to ``found``; the rest of it is unchanged.
 
     Args:
         people, pose: as of `RobotInputs`.

@@ -118,7 +118,7 @@ def _of_step(study: Study, step: Step, drive: DriveState) -> dict[str, Any]:
 
 
 def _of_drive(step: Step, drive: DriveState) -> dict[str, Any]:
-    """Return the parts of the page of a drive."""
+    """Return the parts of the page that show a drive."""
     title = f"Drive {step.index}" if step.kind == "trial" else "Practice"
     parts: dict[str, Any] = {
         "heading": f"{title}, mode {step.shown}",

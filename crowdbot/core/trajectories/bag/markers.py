@@ -82,7 +82,7 @@ def without_deleted(rows: Sequence[BodyRow], notes: list[str]) -> list[BodyRow]:
 
 
 def _points(marker: Any) -> Iterator[tuple[float, float, float]]:
-    """Yield the points of a list, which lie in the frame of its pose."""
+    """Yield the points of a marker's list; they lie in the frame of the marker's pose."""
     from scipy.spatial.transform import Rotation
 
     q, at = marker.pose.orientation, marker.pose.position

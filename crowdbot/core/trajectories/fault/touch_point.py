@@ -24,8 +24,8 @@ class TouchPoint(NamedTuple):
     """The nearest point in some samples, (K,) each.
 
     Attributes:
-        nx, ny: direction from it to the person, world frame; NaN: unknown.
-        closing: its speed in this direction, m/s.
+        nx, ny: direction from the point to the person, world frame; NaN: unknown.
+        closing: the point's speed in this direction, m/s.
         speed: magnitude of its velocity, m/s; of a disc, that of its centre.
     """
 
