@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numba.core.errors import NumbaError
 
+import crowdbot.testing.crowd_views as crowd_views
 from crowdbot.core.crowd import CrowdView
 from crowdbot.core.crowd.velocity_search.cost import (
     BASE,
@@ -30,15 +31,6 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.dsl.spec.component import Component
 from crowdbot.testing.around import each_built
 from crowdbot.testing.cost_parts import above_lower_bound, bases_of, forgets_work, stops_at_budget
-from crowdbot.testing.crowd_views import (
-    SEEDS,
-    arrays_of,
-    moved,
-    odd_views,
-    random_view,
-    turn,
-    turned,
-)
 
 Cost = CompiledCost | NumpyCost
 
@@ -81,7 +73,9 @@ def check_costs_are_numbers(component: Component[Any], registry: Registry | None
     If this fails, look at the named crowd: people who stand, overlap or touch a wall, and
     candidates with zero speed, often cause a division by zero.
     """
-    views = odd_views() | {f"crowd {seed}": random_view(seed) for seed in SEEDS}
+    views = crowd_views.odd_views() | {
+        f"crowd {seed}": crowd_views.random_view(seed) for seed in crowd_views.SEEDS
+    }
     for cost in _costs(component, registry):
         for name, view in views.items():
             _assert_numbers(name, _total(cost, view, _candidates(view)))
@@ -97,8 +91,8 @@ def check_excess_is_not_negative(
     at least zero.
     """
     for cost in _costs(component, registry):
-        for seed in SEEDS:
-            view = random_view(seed)
+        for seed in crowd_views.SEEDS:
+            view = crowd_views.random_view(seed)
             velocities = _candidates(view)
             total = _total(cost, view, velocities)
             least = bases_of(cost, view, velocities) if isinstance(cost, CompiledCost) else 0.0
@@ -118,8 +112,8 @@ def check_candidates_are_independent(
     for cost in _costs(component, registry):
         if isinstance(cost, CompiledCost) and cost.ordered:
             continue
-        for seed in SEEDS:
-            view = random_view(seed)
+        for seed in crowd_views.SEEDS:
+            view = crowd_views.random_view(seed)
             velocities = _candidates(view)
             total = _total(cost, view, velocities)
             again = _total(cost, view, np.ascontiguousarray(velocities[:, ::-1]))[:, ::-1]
@@ -137,8 +131,8 @@ def check_excess_stops_above_budget(
     """
     for cost in _costs(component, registry):
         if isinstance(cost, CompiledCost) and not cost.ordered:
-            for seed in SEEDS:
-                view = random_view(seed)
+            for seed in crowd_views.SEEDS:
+                view = crowd_views.random_view(seed)
                 wrong = stops_at_budget(cost, view, _candidates(view))
                 assert not wrong, wrong
 
@@ -153,8 +147,8 @@ def check_lower_bound_is_below_excess(
     """
     for cost in _costs(component, registry):
         if isinstance(cost, CompiledCost) and cost.lower_bound is not None:
-            for seed in SEEDS:
-                view = random_view(seed)
+            for seed in crowd_views.SEEDS:
+                view = crowd_views.random_view(seed)
                 wrong = above_lower_bound(cost, view, _candidates(view))
                 assert not wrong, wrong
 
@@ -167,8 +161,8 @@ def check_work_is_written(component: Component[Any], registry: Registry | None =
     """
     for cost in _costs(component, registry):
         if isinstance(cost, CompiledCost) and not cost.ordered:
-            for seed in SEEDS:
-                view = random_view(seed)
+            for seed in crowd_views.SEEDS:
+                view = crowd_views.random_view(seed)
                 same = forgets_work(cost, view, _candidates(view))
                 assert same, "costs depend on what was in work before prepare"
 
@@ -190,12 +184,12 @@ def check_input_is_not_changed(component: Component[Any], registry: Registry | N
     If this fails, write into ``work`` only, or copy.
     """
     for cost in _costs(component, registry):
-        view = random_view(0)
+        view = crowd_views.random_view(0)
         velocities = _candidates(view)
         params = cost.params.copy() if isinstance(cost, CompiledCost) else np.zeros(0)
-        before, candidates = arrays_of(view), velocities.copy()
+        before, candidates = crowd_views.arrays_of(view), velocities.copy()
         _total(cost, view, velocities)
-        assert arrays_of(view) == before, "changed the crowd"
+        assert crowd_views.arrays_of(view) == before, "changed the crowd"
         assert np.array_equal(velocities, candidates), "changed the candidates"
         if isinstance(cost, CompiledCost):
             assert np.array_equal(cost.params, params), "changed its parameters"
@@ -210,10 +204,10 @@ def check_translation_invariant(
     that depends on places declares it in ``Component(exceptions=...)``.
     """
     for cost in _costs(component, registry):
-        for seed in SEEDS:
-            view = random_view(seed)
+        for seed in crowd_views.SEEDS:
+            view = crowd_views.random_view(seed)
             velocities = _candidates(view)
-            there = moved(view, np.array([16.0, -8.0]))
+            there = crowd_views.moved(view, np.array([16.0, -8.0]))
             same = _near(_total(cost, view, velocities), _total(cost, there, velocities))
             assert same, "16 m along x, -8 m along y velocities cost something else"
 
@@ -225,10 +219,12 @@ def check_rotation_invariant(component: Component[Any], registry: Registry | Non
     preferred velocity. A function that depends on directions declares it in its ``exceptions``.
     """
     for cost in _costs(component, registry):
-        for seed in SEEDS:
-            view = random_view(seed)
+        for seed in crowd_views.SEEDS:
+            view = crowd_views.random_view(seed)
             velocities = _candidates(view)
-            again = _total(cost, turned(view, _TURN), turn(velocities, _TURN))
+            again = _total(
+                cost, crowd_views.turned(view, _TURN), crowd_views.turn(velocities, _TURN)
+            )
             same = _near(_total(cost, view, velocities), again)
             assert same, f"turned by {_TURN} rad velocities cost something else"
 
@@ -288,8 +284,8 @@ def _assert_gradient(cost: CompiledCost) -> None:
     step, right, count, worst = 1e-5, 0, 0, ""
     around_it = step * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
     alone = replace(cost, weight=1.0)
-    for seed in range(3 * len(SEEDS)):
-        view = random_view(seed)
+    for seed in range(3 * len(crowd_views.SEEDS)):
+        view = crowd_views.random_view(seed)
         found = -Descent(WeightedCosts([alone], view.agents, relaxation_time=0.5)).accelerations(
             view
         )

@@ -7,22 +7,13 @@ from typing import Any
 
 import numpy as np
 
+import crowdbot.testing.crowd_views as crowd_views
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdPolicy, CrowdView, CrowdWorld
 from crowdbot.core.crowd.desired_acceleration import desired_acceleration
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.types.arrays import Array
 from crowdbot.dsl.spec.component import Component
 from crowdbot.testing.around import around, built, specs_of
-from crowdbot.testing.crowd_views import (
-    SEEDS,
-    arrays_of,
-    moved,
-    odd_views,
-    permuted,
-    random_view,
-    turn,
-    turned,
-)
 
 #: Builds a new policy for a set of agents.
 Factory = Callable[[Agents], CrowdPolicy]
@@ -39,8 +30,8 @@ def check_answer_is_numbers(component: Component[Any], registry: Registry | None
     distance of people at the same position, or by the speed of standing people.
     """
     for make in _factories(component, registry):
-        for seed in SEEDS:
-            _assert_answer(f"crowd {seed}", make, random_view(seed))
+        for seed in crowd_views.SEEDS:
+            _assert_answer(f"crowd {seed}", make, crowd_views.random_view(seed))
 
 
 def check_nobody_and_one(component: Component[Any], registry: Registry | None = None) -> None:
@@ -51,7 +42,7 @@ def check_nobody_and_one(component: Component[Any], registry: Registry | None = 
     If this fails, the policy took something for granted about the crowd that is named.
     """
     for make in _factories(component, registry):
-        for name, view in odd_views().items():
+        for name, view in crowd_views.odd_views().items():
             _assert_answer(name, make, view)
 
 
@@ -61,11 +52,13 @@ def check_input_is_not_changed(component: Component[Any], registry: Registry | N
     If this fails, copy before you change an array: all agents share the view.
     """
     for make in _factories(component, registry):
-        for seed in SEEDS:
-            view = random_view(seed)
-            before = arrays_of(view)
+        for seed in crowd_views.SEEDS:
+            view = crowd_views.random_view(seed)
+            before = crowd_views.arrays_of(view)
             _answer(make(view.agents), view)
-            changed = [name for name, data in arrays_of(view).items() if before[name] != data]
+            changed = [
+                name for name, data in crowd_views.arrays_of(view).items() if before[name] != data
+            ]
             assert not changed, f"changed {', '.join(changed)}"
 
 
@@ -75,7 +68,7 @@ def check_same_view_twice(component: Component[Any], registry: Registry | None =
     If this fails, the policy draws from a generator that is not its own, or depends on the time.
     """
     for make in _factories(component, registry):
-        views = [random_view(0)] * 3
+        views = [crowd_views.random_view(0)] * 3
         one, two = make(views[0].agents), make(views[0].agents)
         for view in views:
             same = np.array_equal(_answer(one, view), _answer(two, view))
@@ -91,10 +84,10 @@ def check_permutation_equivariant(
     instead of id.
     """
     for make in _factories(component, registry):
-        for seed in SEEDS:
-            view = random_view(seed)
+        for seed in crowd_views.SEEDS:
+            view = crowd_views.random_view(seed)
             order = np.random.default_rng(seed).permutation(len(view.agents))
-            again = permuted(view, order)
+            again = crowd_views.permuted(view, order)
             _assert_same(_will(make, view)[order], _will(make, again), "another order")
 
 
@@ -107,9 +100,9 @@ def check_translation_invariant(
     ``Component(exceptions={"check_translation_invariant": "why"})``.
     """
     for make in _factories(component, registry):
-        for seed in SEEDS:
-            view = random_view(seed)
-            there = moved(view, np.array([16.0, -8.0]))
+        for seed in crowd_views.SEEDS:
+            view = crowd_views.random_view(seed)
+            there = crowd_views.moved(view, np.array([16.0, -8.0]))
             _assert_same(_will(make, view), _will(make, there), "16 m along x, -8 m along y")
 
 
@@ -120,10 +113,12 @@ def check_rotation_equivariant(component: Component[Any], registry: Registry | N
     ``Component(exceptions={"check_rotation_equivariant": "why"})``.
     """
     for make in _factories(component, registry):
-        for seed in SEEDS:
-            view = random_view(seed)
-            found = _will(make, turned(view, _TURN))
-            _assert_same(turn(_will(make, view), _TURN), found, f"turned by {_TURN} rad")
+        for seed in crowd_views.SEEDS:
+            view = crowd_views.random_view(seed)
+            found = _will(make, crowd_views.turned(view, _TURN))
+            _assert_same(
+                crowd_views.turn(_will(make, view), _TURN), found, f"turned by {_TURN} rad"
+            )
 
 
 def check_time_step_is_no_unit(component: Component[Any], registry: Registry | None = None) -> None:

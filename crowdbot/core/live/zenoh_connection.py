@@ -11,20 +11,8 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any
 
+import crowdbot.core.live.ros2_keys as ros2_keys
 from crowdbot.core.live.message import LiveMessage, OfferedTopic
-from crowdbot.core.live.ros2_keys import (
-    PUBLISHER,
-    SERVER,
-    SUBSCRIPTION,
-    Distro,
-    Ros2Topic,
-    attachment,
-    drivers_of,
-    gid_of,
-    hash_in,
-    in_distro,
-    node_token,
-)
 from crowdbot.core.live.services import Service
 from crowdbot.core.live.session import LiveSession
 from crowdbot.core.live.zenoh_publishers import ZenohPublishers
@@ -54,21 +42,21 @@ class Network:
     endpoint: str = "tcp/127.0.0.1:7447"
     router: bool = False
     domain: int = 0
-    distro: Distro = "jazzy"
+    distro: ros2_keys.Distro = "jazzy"
 
 
 class _Publisher:
     """A topic as eclipse-zenoh publishes it."""
 
-    def __init__(self, topic: Ros2Topic, publisher: Any, token: Any, gid: bytes) -> None:
+    def __init__(self, topic: ros2_keys.Ros2Topic, publisher: Any, token: Any, gid: bytes) -> None:
         self.topic, self.publisher, self.token = topic, publisher, token
         self._gid, self._sequence = gid, itertools.count(1)
         self.has_readers = topic.latched
         self.latest: LiveMessage | None = None
 
-    def put(self, message: LiveMessage, distro: Distro) -> None:
-        about = attachment(next(self._sequence), message.ns, self._gid)
-        data = in_distro(message.data, message.msgtype, distro)
+    def put(self, message: LiveMessage, distro: ros2_keys.Distro) -> None:
+        about = ros2_keys.attachment(next(self._sequence), message.ns, self._gid)
+        data = ros2_keys.in_distro(message.data, message.msgtype, distro)
         self.publisher.put(data, attachment=about)
 
     def undeclare(self) -> None:
@@ -103,7 +91,9 @@ class ZenohConnection:
         self._drivers = {robot: ZenohPublishers() for robot in session.robots}
         self._clocks = ZenohPublishers()
         live = self._zenoh.liveliness()
-        self._kept: list[Any] = [live.declare_token(node_token(network.domain, self._name, _NODE))]
+        self._kept: list[Any] = [
+            live.declare_token(ros2_keys.node_token(network.domain, self._name, _NODE))
+        ]
         for name, robot in session.commands.items():
             self._hear(name, TWIST, partial(self._on_twist, robot))
             self._hear(name, STAMPED, partial(self._on_stamped, robot))
@@ -111,14 +101,14 @@ class ZenohConnection:
             self._hear(name, JOY, partial(self._on_joy, robot))
         if external_clock:
             self._hear(CLOCK, _CLOCK_TYPE, self._on_clock)
-            fits = drivers_of(network.domain, CLOCK)
+            fits = ros2_keys.drivers_of(network.domain, CLOCK)
             self._kept.append(live.declare_subscriber(fits, self._on_keeper, history=True))
         self._servers = ZenohServices(self._zenoh)
         for name, service in services.items():
             topic = self._servers.serve(name, service, network.domain, network.distro)
-            self._say_there(topic, SERVER)
+            self._say_there(topic, ros2_keys.SERVER)
         for name, robot in {**session.commands, **session.joysticks}.items():
-            fits, came = drivers_of(network.domain, name), partial(self._on_driver, robot)
+            fits, came = ros2_keys.drivers_of(network.domain, name), partial(self._on_driver, robot)
             self._kept.append(live.declare_subscriber(fits, came, history=True))
 
     # ---------------------------------------------------------------- the simulation's thread
@@ -153,22 +143,24 @@ class ZenohConnection:
         if not self._zenoh.is_closed():
             self._zenoh.close()
 
-    def _topic(self, name: str, msgtype: str, *, latched: bool = False) -> Ros2Topic:
-        return Ros2Topic(name, msgtype, hash_in(msgtype, self._network.distro), latched)
+    def _topic(self, name: str, msgtype: str, *, latched: bool = False) -> ros2_keys.Ros2Topic:
+        return ros2_keys.Ros2Topic(
+            name, msgtype, ros2_keys.hash_in(msgtype, self._network.distro), latched
+        )
 
     def _declare(self, offer: OfferedTopic) -> _Publisher:
         topic = self._topic(offer.topic, offer.msgtype, latched=offer.latched)
         key, domain = topic.key(self._network.domain), self._network.domain
-        text = topic.token(domain, self._name, next(self._entities), PUBLISHER, _NODE)
+        text = topic.token(domain, self._name, next(self._entities), ros2_keys.PUBLISHER, _NODE)
         token = self._zenoh.liveliness().declare_token(text)
         if offer.latched:
             from zenoh import ext
 
             cache = ext.CacheConfig(max_samples=1)
             made: Any = ext.declare_advanced_publisher(self._zenoh, key, cache=cache)
-            return _Publisher(topic, made, token, gid_of(text))
+            return _Publisher(topic, made, token, ros2_keys.gid_of(text))
         made = self._zenoh.declare_publisher(key)
-        publisher = _Publisher(topic, made, token, gid_of(text))
+        publisher = _Publisher(topic, made, token, ros2_keys.gid_of(text))
         made.declare_matching_listener(lambda status: self._on_listener(publisher, status))
         publisher.has_readers = bool(made.matching_status.matching)
         return publisher
@@ -177,9 +169,9 @@ class ZenohConnection:
     def _hear(self, name: str, msgtype: str, heard: Any) -> None:
         topic = self._topic(name, msgtype)
         self._kept.append(self._zenoh.declare_subscriber(topic.key(self._network.domain), heard))
-        self._say_there(topic, SUBSCRIPTION)
+        self._say_there(topic, ros2_keys.SUBSCRIPTION)
 
-    def _say_there(self, topic: Ros2Topic, kind: str) -> None:
+    def _say_there(self, topic: ros2_keys.Ros2Topic, kind: str) -> None:
         domain, number = self._network.domain, next(self._entities)
         text = topic.token(domain, self._name, number, kind, _NODE)
         self._kept.append(self._zenoh.liveliness().declare_token(text))

@@ -8,13 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from typing import Any
 
-from crowdbot.core.live.ros2_keys import (
-    Distro,
-    Ros2Topic,
-    attachment,
-    read_attachment,
-    service_hash_in,
-)
+import crowdbot.core.live.ros2_keys as ros2_keys
 from crowdbot.core.live.service_types import ServiceType, service_type
 from crowdbot.core.live.services import Service, Values
 from crowdbot.errors import InputError
@@ -32,14 +26,18 @@ class ZenohServices:
         self._threads = ThreadPoolExecutor(_MOST_CALLS, thread_name_prefix="zenoh-service")
         self._kept: list[Any] = []
 
-    def serve(self, name: str, service: Service, domain: int, distro: Distro) -> Ros2Topic:
+    def serve(
+        self, name: str, service: Service, domain: int, distro: ros2_keys.Distro
+    ) -> ros2_keys.Ros2Topic:
         """Announce and serve one service.
 
         Returns:
             Its ROS 2 name.
         """
         types = service_type(service)
-        topic = Ros2Topic(name, service.kind, service_hash_in(types.hash, distro))
+        topic = ros2_keys.Ros2Topic(
+            name, service.kind, ros2_keys.service_hash_in(types.hash, distro)
+        )
 
         def on_query(query: Any) -> None:
             with suppress(RuntimeError):  # already closed
@@ -57,7 +55,7 @@ class ZenohServices:
     def _answer(self, query: Any, service: Service, types: ServiceType) -> None:
         with query:
             attached = None if query.attachment is None else query.attachment.to_bytes()
-            known = None if attached is None else read_attachment(attached)
+            known = None if attached is None else ros2_keys.read_attachment(attached)
             if known is None:
                 query.reply_err(b"a request of rmw_zenoh has an attachment of 33 bytes")
                 return
@@ -69,7 +67,9 @@ class ZenohServices:
                 query.reply_err(str(error).encode())
                 return
             query.reply(
-                query.key_expr, answer, attachment=attachment(number, time.time_ns(), client)
+                query.key_expr,
+                answer,
+                attachment=ros2_keys.attachment(number, time.time_ns(), client),
             )
 
 

@@ -12,31 +12,16 @@ from typing import Annotated, Any, Literal, Self
 from annotated_types import Len
 from pydantic import Field, ValidationError
 
+import crowdbot.core.runs.record_parts as record_parts
 from crowdbot.core.planning.containment.offer import ALL, Aspect
 from crowdbot.core.runs import run_directory as files
-from crowdbot.core.runs.record_parts import (
-    CostPart,
-    Count,
-    ExcusedPart,
-    Hash,
-    HashesPart,
-    Identity,
-    IdentityHashes,
-    LivePart,
-    MetricPart,
-    MomentPart,
-    PlannerPart,
-    PluginPart,
-    RecordPart,
-    RobotPart,
-)
 from crowdbot.errors import InputError
 
 #: Kind of planner of a run in which a person held the stick.
 BY_PERSON = "teleop"
 
 
-class RunIdentity(RecordPart):
+class RunIdentity(record_parts.RecordPart):
     """Everything that determines the course of a run.
 
     Attributes:
@@ -46,25 +31,25 @@ class RunIdentity(RecordPart):
         replace_draws: how many draws might be replaced, if any.
     """
 
-    scenario: Identity[str]
-    suite: Identity[str]
-    planner: Identity[PlannerPart]
-    step_budget: Identity[int | float | None] = None
-    planner_memory: Identity[int | None] = None
-    duration: Identity[int | float] = 0.0
-    replace_draws: Identity[Count] = 0
-    seed: Identity[Count]
-    hashes: Identity[IdentityHashes]
-    versions: Identity[dict[str, str]]
-    plugins: Identity[list[PluginPart]]
+    scenario: record_parts.Identity[str]
+    suite: record_parts.Identity[str]
+    planner: record_parts.Identity[record_parts.PlannerPart]
+    step_budget: record_parts.Identity[int | float | None] = None
+    planner_memory: record_parts.Identity[int | None] = None
+    duration: record_parts.Identity[int | float] = 0.0
+    replace_draws: record_parts.Identity[record_parts.Count] = 0
+    seed: record_parts.Identity[record_parts.Count]
+    hashes: record_parts.Identity[record_parts.IdentityHashes]
+    versions: record_parts.Identity[dict[str, str]]
+    plugins: record_parts.Identity[list[record_parts.PluginPart]]
 
 
-class _Record(CostPart):
+class _Record(record_parts.CostPart):
     """A record that is stored in the directory of its run."""
 
-    run_id: Hash
-    files: dict[str, Count] = Field(default_factory=dict)
-    digests: dict[str, Hash] = Field(default_factory=dict)
+    run_id: record_parts.Hash
+    files: dict[str, record_parts.Count] = Field(default_factory=dict)
+    digests: dict[str, record_parts.Hash] = Field(default_factory=dict)
 
     @classmethod
     def parse(cls, document: Mapping[str, Any], source: object) -> Self:
@@ -114,10 +99,10 @@ class RunRecord(_Record, RunIdentity):
     A column of results is a field of this, or a property of `RunRow`.
     """
 
-    hashes: Identity[HashesPart]
+    hashes: record_parts.Identity[record_parts.HashesPart]
     axes: dict[str, str] = Field(default_factory=dict)
     axis_words: dict[str, Annotated[list[str], Len(2, 2)]] = Field(default_factory=dict)
-    position: Count = 0
+    position: record_parts.Count = 0
     altered: list[str] = Field(default_factory=list)
     agents: Literal["locked", "drawn", "none"] = "none"
     pinned: bool
@@ -127,18 +112,18 @@ class RunRecord(_Record, RunIdentity):
     planner_contained: list[Aspect] | None = None
     allowed_plugins: list[str] | None = None
     recorded: Literal["all", "used", "none"] = "all"
-    robots: dict[str, RobotPart] = Field(default_factory=dict)
-    excused: list[ExcusedPart] = Field(default_factory=list)
+    robots: dict[str, record_parts.RobotPart] = Field(default_factory=dict)
+    excused: list[record_parts.ExcusedPart] = Field(default_factory=list)
     references: dict[str, str]
-    reference_hashes: dict[str, Hash] = Field(default_factory=dict)
+    reference_hashes: dict[str, record_parts.Hash] = Field(default_factory=dict)
     density: float | None = None
     conditions: dict[str, str] = Field(default_factory=dict)
     crowd: str | None = None
-    metrics: dict[str, MetricPart]
+    metrics: dict[str, record_parts.MetricPart]
     suite_metrics: list[str] = Field(default_factory=list)
-    worst_moment: MomentPart | None = None
+    worst_moment: record_parts.MomentPart | None = None
     machine: dict[str, str]
-    live: LivePart | None = None
+    live: record_parts.LivePart | None = None
 
     @property
     def knows_truth(self) -> bool:
@@ -210,19 +195,19 @@ def _metric_conditions(record: str) -> Mapping[str, str]:
     return {f"metrics.{name}": json.dumps(part, sort_keys=True) for name, part in metrics}
 
 
-class ReferenceIdentity(RecordPart):
+class ReferenceIdentity(record_parts.RecordPart):
     """Everything that a calibration run depends on."""
 
-    reference: Identity[str]
-    spec: Identity[Hash]
-    versions: Identity[dict[str, str]]
-    plugins: Identity[list[PluginPart]] = Field(default_factory=list)
-    planner: Identity[dict[str, Any]] = Field(default_factory=dict)
-    seed: Identity[Count] = 0
-    step_budget: Identity[int | float | None] = None
-    planner_memory: Identity[int | None] = None
-    realisation: Identity[str] = ""
-    duration: Identity[int | float] = 0.0
+    reference: record_parts.Identity[str]
+    spec: record_parts.Identity[record_parts.Hash]
+    versions: record_parts.Identity[dict[str, str]]
+    plugins: record_parts.Identity[list[record_parts.PluginPart]] = Field(default_factory=list)
+    planner: record_parts.Identity[dict[str, Any]] = Field(default_factory=dict)
+    seed: record_parts.Identity[record_parts.Count] = 0
+    step_budget: record_parts.Identity[int | float | None] = None
+    planner_memory: record_parts.Identity[int | None] = None
+    realisation: record_parts.Identity[str] = ""
+    duration: record_parts.Identity[int | float] = 0.0
 
 
 class ReferenceRecord(_Record, ReferenceIdentity):
@@ -234,7 +219,7 @@ def record_problems(document: Mapping[str, Any]) -> list[str]:
     return _problems(RunRecord, document)
 
 
-def _problems(model: type[RecordPart], document: Mapping[str, Any]) -> list[str]:
+def _problems(model: type[record_parts.RecordPart], document: Mapping[str, Any]) -> list[str]:
     try:
         model.model_validate(dict(document))
     except (ValidationError, RecursionError) as error:

@@ -6,24 +6,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from struct import pack
 
+import mcap.records as mcap_records
 from isal.isal_zlib import crc32
 from mcap.opcode import Opcode
-from mcap.records import (
-    AttachmentIndex,
-    Channel,
-    ChunkIndex,
-    DataEnd,
-    Footer,
-    McapRecord,
-    Schema,
-    Statistics,
-    SummaryOffset,
-)
 from mcap.writer import MCAP0_MAGIC
 
 from crowdbot.core.recording.container.chunk import serialised
 
-_END_OF_DATA = serialised([DataEnd(data_section_crc=0)])
+_END_OF_DATA = serialised([mcap_records.DataEnd(data_section_crc=0)])
 #: Bytes between the data and the summary.
 END_OF_DATA_SIZE = len(_END_OF_DATA)
 
@@ -32,17 +22,17 @@ END_OF_DATA_SIZE = len(_END_OF_DATA)
 class FileIndex:
     """The facts about a file in its summary."""
 
-    schemas: Sequence[Schema]
-    channels: Sequence[Channel]
-    statistics: Statistics
-    chunks: Sequence[ChunkIndex]
-    attachments: Sequence[AttachmentIndex] = field(default=())
+    schemas: Sequence[mcap_records.Schema]
+    channels: Sequence[mcap_records.Channel]
+    statistics: mcap_records.Statistics
+    chunks: Sequence[mcap_records.ChunkIndex]
+    attachments: Sequence[mcap_records.AttachmentIndex] = field(default=())
 
 
 def ending(index: FileIndex, at: int) -> bytes:
     """Return all bytes from the end of the data, at ``at``, to the closing magic."""
     begin = at + END_OF_DATA_SIZE
-    groups: dict[Opcode, Iterable[McapRecord]] = {
+    groups: dict[Opcode, Iterable[mcap_records.McapRecord]] = {
         Opcode.SCHEMA: index.schemas,
         Opcode.CHANNEL: index.channels,
         Opcode.STATISTICS: [index.statistics],
@@ -53,9 +43,11 @@ def ending(index: FileIndex, at: int) -> bytes:
     data, offsets = b"", []
     for opcode, records in groups.items():
         group = serialised(records)
-        offsets.append(SummaryOffset(opcode, begin + len(data), len(group)))
+        offsets.append(mcap_records.SummaryOffset(opcode, begin + len(data), len(group)))
         data += group
-    footer = Footer(summary_start=begin, summary_offset_start=begin + len(data), summary_crc=0)
+    footer = mcap_records.Footer(
+        summary_start=begin, summary_offset_start=begin + len(data), summary_crc=0
+    )
     data += serialised(offsets)
     # The checksum covers the summary and the footer up to the checksum.
     begun = serialised([footer])[:-4]
