@@ -106,10 +106,7 @@ class RelativeJerk(DeclaredMetric[specs.RelativeJerkSpec]):
         return abs(one - two) > (self.spec.sampling_tol + RATE_TOLERANCE) * max(one, two)
 
     def _jerk(self, run: Trajectories) -> Mapping[str, float]:
-        """Return one jerk value per variant.
-
-        Here a is each step's tangential acceleration, alpha = dw/dt.
-        """
+        """Return the value of each variant, from forward speed v and yaw rate w."""
         t, robot, dt = run.t, robot_of(run), np.diff(run.t)
         v = forward_speed(t, robot, self.spec.jump_speed)
         w = yaw_rate(t, robot, self.spec.jump_speed)

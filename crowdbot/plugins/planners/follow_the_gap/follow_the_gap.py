@@ -11,7 +11,7 @@ from crowdbot.plugins.planners.shared.rungs import RungSpec
 
 
 class FollowTheGapSpec(RungSpec):
-    """The weight of the gap is that of Sezer and Gokasan 2012 in units of the robot's size."""
+    """Follow the gap; `gap_weight` is that of Sezer and Gokasan (2012), per robot size."""
 
     kind: Literal["follow_the_gap"] = "follow_the_gap"
     view: PositiveAngle = default(1.6, "Gaps are looked for this far to either side, rad.", le=3.1)

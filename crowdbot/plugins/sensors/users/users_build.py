@@ -168,7 +168,7 @@ class SwitchUser(SyntheticUser):
         return spec.deflection * ahead, spec.deflection * aside
 
     def _wanted(self, desired: Wish, mark: int) -> int:
-        """Return the mark that the user wants when its press takes effect; 0: to stand."""
+        """Return the command mark to choose for when the press takes effect; 0: stand still."""
         spec, aside = self._switch, self.MARKS[mark][1]
         off = desired.off - spec.reaction * spec.deflection * aside * self._most[1]
         if abs(off) > spec.tolerance and off * aside >= 0.0:
