@@ -189,7 +189,7 @@ def simulate(
 
 
 def _patterns(metrics: str | Sequence[str]) -> Sequence[str] | None:
-    """Return the metrics for the record; None means all."""
+    """Return metric patterns for the run record; None for ``"*"``, which selects all."""
     if metrics == "*":
         return None
     return texts_of("metrics", metrics)

@@ -36,7 +36,7 @@ class CrowdbotError(Exception):
     exit_code = 1
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle without the arguments of ``__init__``, which pools would call with the message."""
+        """Return data for pickle that restores the error without calling ``__init__``."""
         return _as_raised, (type(self), self.args, self.__dict__)
 
 

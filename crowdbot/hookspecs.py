@@ -67,7 +67,7 @@ def crowdbot_scenario_dirs() -> Sequence[Traversable]:  # type: ignore[empty-bod
     path, or it extends ``NAME:...``; they may be in an archive.
 
     Returns:
-        A list or tuple of folders. Parts that others extend go into a folder inside.
+        A list or tuple of folders. Files that only serve ``extends`` go into a subfolder.
 
     Example::
 

@@ -37,7 +37,7 @@ def old_name(module: str, new: ModuleType, name: str) -> Any:
 
 @contextmanager
 def collected_old_names() -> Iterator[list[str]]:
-    """Collect warnings of deprecated names in a context, one line each; others are shown."""
+    """Collect warnings of deprecated names in a context, one line each; show other warnings."""
     lines: list[str] = []
 
     def keep(text: str, file: str, line: int) -> None:
@@ -55,7 +55,7 @@ def collected_old_names() -> Iterator[list[str]]:
 
 @contextmanager
 def shown_old_names() -> Iterator[None]:
-    """Show warnings of deprecated names in a context, one line each."""
+    """Print warnings of deprecated names in a context, one line each."""
     lines: list[str] = []
     try:
         with collected_old_names() as lines:
@@ -65,7 +65,7 @@ def shown_old_names() -> Iterator[None]:
 
 
 def say_old_names(lines: Iterable[str]) -> None:
-    """Log lines of `collected_old_names` once per process, or pass them on where requested."""
+    """Log warning lines once per process; inside `collected_old_names`, add them to its list."""
     for line in lines:
         if _COLLECTED:
             _COLLECTED[-1].append(line)

@@ -1,4 +1,4 @@
-"""Warnings of one class, passed on in another form."""
+"""Pass warnings of one class to a function instead of showing them."""
 
 from __future__ import annotations
 

@@ -107,7 +107,7 @@ def _run(argv: Sequence[str] | None) -> int:
 
 
 def _dispatch(words: list[str]) -> None:
-    """Run a command; typer is loaded here, where nothing is printed with ``-q``."""
+    """Run a command. Typer is imported only here, after ``-q`` took effect."""
     from crowdbot.cli.app.typer_app import run
 
     run(words)
@@ -126,7 +126,7 @@ _TELLING = frozenset(
 
 
 def _say_warning(text: str, *_: object) -> None:
-    """Show a warning of a recording as a message, without a place in crowdbot's own code."""
+    """Print a warning about a recording as a message, without file and line of crowdbot's code."""
     _say(f"warning: {text}")
 
 
@@ -173,5 +173,5 @@ def _say(text: str) -> None:
 
 
 def _drop_output() -> None:
-    """Prevent the interpreter from flushing into the closed pipe at exit."""
+    """Redirect output to the null device, since flushing a closed pipe at exit would fail."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -30,5 +30,5 @@ def command_names() -> list[str]:
 
 
 def module_name(command: str) -> str:
-    """Return the name of a command's module and function, distinct from the keywords of Python."""
+    """Return the name of a command's module and function; Python keywords get a ``_``."""
     return command.replace("-", "_") + "_" * keyword.iskeyword(command)

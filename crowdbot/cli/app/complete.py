@@ -103,7 +103,7 @@ def _discovered() -> dict[str, list[str]]:
 
 
 def _state() -> str:
-    """Return a text that changes when something is installed, or our own components change."""
+    """Return a cache key that changes when packages or crowdbot's own components change."""
     places = [Path(p) for p in sys.path if p.endswith(("site-packages", "dist-packages"))]
     own = Path(__file__).parent.parent.parent / "plugins"
     newest = max(own.rglob("*.py"), key=lambda p: p.stat().st_mtime_ns)
@@ -113,7 +113,7 @@ def _state() -> str:
 
 
 def _kept(prefix: str, key: str, make: Callable[[], Any]) -> Any:
-    """Return what was made for a key, from the user's cache if it is there."""
+    """Return the result of ``make``, cached in the user's cache folder by prefix and key."""
     base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "crowdbot" / _CACHE
     file = base / f"{prefix}-{hashlib.sha256(key.encode()).hexdigest()[:16]}.json"
     try:

@@ -19,7 +19,7 @@ from crowdbot.errors import printable
 
 
 def internal_error(error: Exception) -> str:
-    """Return one line on a bug, which names installed plugins, since they may have caused it."""
+    """Return one line that reports a bug and names installed plugins, a possible cause."""
     from importlib.metadata import entry_points
 
     text = (
@@ -38,7 +38,7 @@ def internal_error(error: Exception) -> str:
 
 
 def system_error(error: OSError) -> str:
-    """Return one line that names the file, or the limit that was reached."""
+    """Return one line for an error of the operating system: its file or limit, and the reason."""
     if error.filename is None and error.errno == errno.ENOENT and _has_no_folder():
         return "error: the current folder is gone; change to one that exists"
     where = error.filename or "operating system"
@@ -69,10 +69,9 @@ def _has_no_folder() -> bool:
 
 
 def left_by(error: BaseException) -> str:
-    """Describe how a plugin made crowdbot exit from outside its call; empty if it did not.
+    """Return an error line if a plugin ended the process outside of its own calls, else "".
 
-    Empty also after an interrupt by the user, and after the command line's own ``SystemExit`` from
-    click.
+    Also "" after an interrupt by the user, or a ``SystemExit`` raised by click.
     """
     turned = error.__context__.__cause__ if error.__context__ else None
     if isinstance(turned, KeyboardInterrupt):  # typer converts it to an exit

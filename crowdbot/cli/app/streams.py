@@ -17,7 +17,7 @@ _NAME = "crowdbot.plain"
 
 
 def prepare_streams() -> None:
-    """Replace closed streams, and let open ones print something for every character."""
+    """Replace closed standard streams; escape characters that open ones cannot encode."""
     _fill_closed()
     _drop_sizes_of_nothing()
     codecs.register_error(_NAME, _plainly)
@@ -27,7 +27,7 @@ def prepare_streams() -> None:
 
 
 def _drop_sizes_of_nothing() -> None:
-    """Forget a terminal of no width or height, as some containers have: nothing fits in it."""
+    """Delete ``COLUMNS`` and ``LINES`` if they are zero or empty, as in some containers."""
     for name in ("COLUMNS", "LINES"):
         if os.environ.get(name, "1").strip().strip("0") == "":
             del os.environ[name]
@@ -36,7 +36,7 @@ def _drop_sizes_of_nothing() -> None:
 def _fill_closed() -> None:
     """Open the null device for closed streams.
 
-    Otherwise the next file would take their place, and get what libraries print.
+    Otherwise the next opened file would get their descriptor, and the output of libraries.
     """
     for number in range(3):
         try:
@@ -52,7 +52,7 @@ def _fill_closed() -> None:
 
 
 def _plainly(error: UnicodeError) -> tuple[str | bytes, int]:
-    """Return something printable for what cannot be encoded; escapes for unknown characters."""
+    """Return an ASCII replacement or an escape for characters that cannot be encoded."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     text = error.object[error.start : error.end]

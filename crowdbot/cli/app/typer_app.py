@@ -46,7 +46,7 @@ def run(words: list[str]) -> None:
 
 @cache
 def _whole(narrow: bool) -> Any:
-    """Return the command line, for one width of the terminal; tests run hundreds of lines."""
+    """Return the whole command line application, for a narrow or a wide terminal."""
     command = get_command(_app(narrow))
     refuse_repetition(command)
     return command
@@ -64,7 +64,7 @@ def _escaped_errors() -> Iterator[None]:
 
 
 def _meant_runs(text: str, ctx: Any) -> str:
-    """Return a hint if a folder was given as an argument to a command that has ``--runs``."""
+    """Return a hint on ``--runs`` if a folder was given as an argument; empty otherwise."""
     extra = re.fullmatch(r"Got unexpected extra argument\(?s?\)? \((.+)\)", text)
     takes_runs = ctx is not None and any("--runs" in p.opts for p in ctx.command.params)
     if not (extra and takes_runs and Path(extra[1]).is_dir()):
@@ -76,7 +76,7 @@ class _Commands(TyperGroup):
     """A group whose commands are the modules of this package."""
 
     def make_context(self, *args: Any, **given: Any) -> Any:
-        """Read the options before the command's name."""
+        """Parse options before the command's name, with hidden characters escaped in errors."""
         with _escaped_errors():
             return super().make_context(*args, **given)
 
@@ -106,7 +106,7 @@ def load(name: str) -> Any:
 
 @cache
 def _command(found: Any, name: str, group: str, narrow: bool) -> Any:
-    """Return a function, or a group of them, as a command, for one width of the terminal."""
+    """Convert a function or a `typer.Typer` to a command, for a narrow or a wide terminal."""
     if not isinstance(found, typer.Typer):
         app = typer.Typer(**_SETTINGS)
         app.command(name=name)(found)
@@ -130,7 +130,7 @@ def _command(found: Any, name: str, group: str, narrow: bool) -> Any:
 
 
 def _is_narrow() -> bool:
-    """Return True if a table of options would truncate names, which plain help does not."""
+    """Return True if the terminal is too narrow for help with tables of options."""
     return shutil.get_terminal_size().columns < _NARROW
 
 

@@ -13,7 +13,7 @@ from crowdbot.errors import InputError
 
 
 def adversary_lines(results: Results, seeing: Collection[str]) -> list[dict[str, Any]]:
-    """Return the standing of each adversary beside each careful planner.
+    """Return the comparison of each adversary with each careful planner by the ranking rule.
 
     Args:
         results: runs of one suite.

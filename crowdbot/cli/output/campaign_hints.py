@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def known_runs(plan: Plan) -> str:
-    """Return a line about missing runs that the shipped reference scores hold, or nothing."""
+    """Return a hint on missing runs whose scores are in the shipped references; else ""."""
     from crowdbot.core.campaign.extend_references import known_jobs
     from crowdbot.core.results.reference_file import SHIPPED, opened
 

@@ -67,7 +67,7 @@ def _check_all(
 
 
 def _lock_problems(files: LockFiles) -> Iterator[Diagnostic]:
-    """Yield errors in a lock's files; 'lock --check' tests if they are up to date."""
+    """Yield errors in a lock's files; only `crowdbot lock --check` tests if they are current."""
     from crowdbot.dsl.text.diagnostics import Diagnostic, Mark, Source
     from crowdbot.errors import InputError
 

@@ -18,7 +18,7 @@ _FIELDS = ("field", "type", "unit", "default", "description")
 
 
 def as_dict(component: Component[Any], registry: Registry) -> dict[str, Any]:
-    """Return a component as JSON."""
+    """Return the description of a component as JSON data."""
     owner = registry.owner(component)
     return {
         "kind": component.kind,
@@ -40,7 +40,7 @@ def as_dict(component: Component[Any], registry: Registry) -> dict[str, Any]:
 
 
 def as_text(component: Component[Any], registry: Registry) -> str:
-    """Return a component as a page."""
+    """Return the description of a component as text."""
     from crowdbot.dsl.text.plain_yaml import to_yaml
 
     about = as_dict(component, registry)
@@ -81,7 +81,7 @@ def reference(component: Component[Any], owner: Plugin) -> str:
 
 
 def _page_of_planner(component: Component[Any]) -> str:
-    """Return the page of one of our planners; adversaries share a table, candidates have pages."""
+    """Return the documentation page of one of crowdbot's planners, with its section if shared."""
     role = getattr(component.spec, "role", "")
     own = f"planners/{component.kind}.md"
     pages = {"adversary": "planners.md#adversaries", "candidate": own, "ceiling": own}
@@ -112,11 +112,11 @@ def _label(metric: MetricComponent[Any]) -> dict[str, Any]:
 
 
 def _fields(model: Any, prefix: str = "", *, words: bool = False) -> Iterator[list[str]]:
-    """Yield rows of name, type, unit, default and description; maps of fields are followed.
+    """Yield rows of name, type, unit, default and description, nested fields included.
 
     Args:
         model: the spec.
-        prefix: of all names.
+        prefix: put before all names.
         words: True for types and defaults in words, with limits.
     """
     from crowdbot.dsl.checks.pydantic_errors import nested_model

@@ -60,7 +60,7 @@ def _packages() -> Iterator[DoctorFinding]:
 
 
 def _extras() -> dict[str, str]:
-    """Return distribution -> extra of what crowdbot can do without."""
+    """Return optional distribution -> the extra that installs it."""
     extras = dict[str, str]()
     for text in requires("crowdbot") or ():
         extra = re.search(r"extra == ['\"]([\w-]+)", text)

@@ -46,7 +46,7 @@ class FilmOptions:
         """Raise an error for options that the chosen format does not use.
 
         Raises:
-            UsageError: naming one.
+            UsageError: an option does not apply to the format.
         """
         names = {"first": "from", "last": "until", "rate": "fps", "follow": "follow"}
         unused = {FILMS[0]: ("at",), PICTURE: ("first", "last", "rate", "speed")}
@@ -106,7 +106,7 @@ def _filmed(recording: Path, options: FilmOptions, to: str) -> FilmedRun:
 
 
 def _decisive(recording: Path, filmed: FilmedRun) -> float:
-    """Return the decisive moment of a run, s; of a lone recording its middle."""
+    """Return the decisive moment of a run, s; for a recording without a run, its middle."""
     from crowdbot.core.why.explain import explain
 
     try:

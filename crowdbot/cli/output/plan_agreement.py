@@ -50,7 +50,7 @@ def check_against_images(
 def _agreements(
     spec: str, registry: Registry, overrides: Sequence[str]
 ) -> Iterator[tuple[str, Agreement]]:
-    """Yield the first scenario of each place that is made of an image, and the comparison."""
+    """Yield, for each place made from an image, its first scenario's id and the comparison."""
     from crowdbot.core.scenarios.library import open_suite
 
     seen = set[str]()

@@ -43,7 +43,7 @@ def line_of(summary: GroupSummary) -> dict[str, Any]:
 
 
 def print_lines(lines: list[dict[str, Any]], *, as_csv: bool, as_json: bool) -> None:
-    """Print lines with the same columns."""
+    """Print lines that have the same columns, as a table, CSV or JSON."""
     if as_json:
         say_json(lines)
     elif as_csv:
@@ -147,7 +147,7 @@ def _narrow(line: dict[str, Any]) -> dict[str, Any]:
 
 
 def _broken(line: dict[str, Any]) -> dict[str, Any]:
-    """Return a line whose names are broken between words."""
+    """Return a line whose texts are wrapped to narrow columns."""
     return {n: wrap_name(v, _NAME_WIDTH) if isinstance(v, str) else v for n, v in line.items()}
 
 

@@ -68,7 +68,7 @@ def _document(run: Run, rows: Sequence[RunScore]) -> dict[str, Any]:
 
 
 def _print_text(*lines: str, fold: bool = True) -> None:
-    """Print lines that wrap between words, or paths that must stay whole."""
+    """Print lines, wrapped between words; with ``fold=False`` unwrapped, as for paths."""
     from rich.console import Console
 
     for line in lines:
@@ -89,7 +89,7 @@ def _print_scores(run: Run, scores: Sequence[Score], everything: bool) -> None:
 
 
 def _few(shown: Sequence[Score]) -> Table:
-    """Return the four scores with their meaning; the first others where there are none."""
+    """Return a table of the four main scores, or of the first scores if there are none."""
     from rich.table import Table
     from rich.text import Text
 

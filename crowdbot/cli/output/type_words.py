@@ -20,7 +20,7 @@ def type_words(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
 
     Args:
         annotation: the type.
-        metadata: what its `Annotated` or field says beside it.
+        metadata: further arguments of `Annotated`, or the field's metadata.
     """
     origin, inside = get_origin(annotation), get_args(annotation)
     if hasattr(annotation, "__metadata__"):
@@ -43,7 +43,7 @@ def type_words(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
 
 
 def _last_none(inside: tuple[Any, ...]) -> list[Any]:
-    """Return the members of a union, absence last."""
+    """Return the members of a union, ``None`` last."""
     return sorted(inside, key=lambda one: one is type(None))
 
 

@@ -86,7 +86,7 @@ def listening(
 
     Raises:
         MissingLibraryError: the extra ``live`` is not installed.
-        InputError: the address cannot be had.
+        InputError: the address is not available.
     """
     first = _rosbridge if listen.connect is None else _connected
     return _opened(session, policy, listen, [first])
@@ -106,7 +106,7 @@ def listening_also(
 def _opened(
     session: LiveSession, policy: StepPolicy, listen: Listen, first: Sequence[_Server]
 ) -> Iterator[list[LiveConnection]]:
-    """Open the first servers, and those that the options name."""
+    """Open the given servers, and Zenoh and Foxglove if the options name them."""
     more = {_zenoh: listen.zenoh, _foxglove: listen.foxglove}
     with ExitStack() as stack:
         connections: list[LiveConnection] = []

@@ -33,10 +33,10 @@ _SHOWN = 3
 
 
 def open_results(root: Path, altered: bool, metrics: Sequence[str] = ()) -> Results:
-    """Return all results; those of altered scenarios only if asked for, else stderr tells them.
+    """Return all results; altered scenarios are left out, with a note, unless ``altered``.
 
     Args:
-        metrics: patterns of names that are going to be asked for.
+        metrics: patterns of metrics that the command needs.
 
     Raises:
         InputError: there is no such folder, or no run, altered ones included, has such a metric.
@@ -60,7 +60,7 @@ def open_results(root: Path, altered: bool, metrics: Sequence[str] = ()) -> Resu
 
 
 def by_suite(results: Results) -> dict[str, Results]:
-    """Return suite -> its results, in order; each change to a scenario makes a suite of its own."""
+    """Return suite -> its results, in order; scenarios with ``--set`` count as other suites."""
     from crowdbot.core.results.score_columns import of_runs
 
     parts = {}
@@ -99,7 +99,7 @@ def of_each_suite(results: Results, look: Callable[[Results], T]) -> dict[str, T
 
 
 def named_by_suite(found: Mapping[str, Iterable[dict[str, Any]]]) -> list[dict[str, Any]]:
-    """Return the lines of all suites, which name their suite where there are several."""
+    """Return the lines of all suites; if there are several, each line names its suite."""
     several = len(found) > 1
     return [
         ({"suite": suite} if several else {}) | line

@@ -40,7 +40,7 @@ def show_progress() -> Iterator[Callable[[Report], None]]:
 
 @contextmanager
 def _excuse() -> Iterator[None]:
-    """Print why there is no output yet, unless the simulation ends at once."""
+    """Print that kernels are being compiled, if the context lasts and nothing is compiled yet."""
     done = threading.Event()
     if nothing_compiled():
         threading.Thread(target=_tell_of_compiling, args=(done,), daemon=True).start()
@@ -51,7 +51,7 @@ def _excuse() -> Iterator[None]:
 
 
 def _tell_of_compiling(done: threading.Event) -> None:
-    """Print a line at once, and occasional progress until everything is compiled."""
+    """After a short wait, print that kernels are being compiled, then occasional progress."""
     if done.wait(PATIENCE):
         return
     time = "half a minute" if available_cores() > 1 else "a minute"

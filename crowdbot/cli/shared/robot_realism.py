@@ -27,11 +27,11 @@ DRAWS = 2
 def of_people(
     homography: str | None, frame_rate: float | None, files: Sequence[Path] | None, *, robot: bool
 ) -> VideoScale:
-    """Return the scale of recorded people's tables.
+    """Return the scale of tables in pixels and frames, from the values of the two options.
 
     Raises:
-        UsageError: there is one without a file, or for tables with a robot, whose sizes are metres.
-        InputError: as of `video_scale`.
+        UsageError: it is given without a file, or with ``--robot``, whose tables are metric.
+        InputError: as for `video_scale`.
     """
     from crowdbot.core.trajectories.data_sets.homography import video_scale
 

@@ -52,7 +52,7 @@ def verify_references(
 
 
 def outcome_lines(document: dict[str, Any]) -> Iterator[str]:
-    """Yield the lines that report the outcome."""
+    """Yield a line for each repeated run, and one with the number of identical runs."""
     for name, relation in document["runs"].items():
         yield f"{name}: {relation}"
     count = len(document["runs"])

@@ -67,7 +67,7 @@ def _check_overlaps(facts: Facts) -> Iterator[Diagnostic]:
 
 
 def overlapping(discs: Sequence[Disc]) -> Iterator[tuple[int, int]]:
-    """Yield pairs of overlapping discs (x, y, radius), by number; discs that touch are fine."""
+    """Yield index pairs of overlapping discs (x, y, radius; m); touching discs do not count."""
     side = 2.0 * max((d[2] for d in discs), default=1.0)
     cells: dict[tuple[int, int], list[int]] = {}
     for k, (x, y, radius) in enumerate(discs):

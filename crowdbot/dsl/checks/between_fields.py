@@ -33,7 +33,7 @@ class Checks:
         self._passed: set[tuple[object, ...]] = set()
 
     def of(self, scenario: Scenario, tree: Node) -> list[Diagnostic]:
-        """Return all contradictions of a scenario, with positions in its source tree."""
+        """Return the errors between fields of a scenario, with positions in its source tree."""
         diagnostics, facts = list[Diagnostic](), Facts(scenario, tree)
         for check, parts in _CHECKS:
             key = (check, *(id(tree.child(part)) for part in parts))
@@ -57,7 +57,7 @@ def _check_kinds(part: str, facts: Facts) -> Iterator[Diagnostic]:
 
 
 def _has_kind(tree: Node, path: tuple[str, ...]) -> bool:
-    """Return True if a kind is written at a path, which is the usual case."""
+    """Return True if the document writes a ``kind`` in the map at a path."""
     node: Node | None = tree
     for name in (*path, "kind"):
         node = None if node is None else node.child(name)
@@ -65,7 +65,7 @@ def _has_kind(tree: Node, path: tuple[str, ...]) -> bool:
 
 
 def _of_crowd(check: Check) -> Check:
-    """Return a check for scenarios that have people."""
+    """Return a check that passes scenarios without people, and applies ``check`` to all others."""
     return lambda facts: check(facts) if facts.scenario.crowd is not None else iter(())
 
 

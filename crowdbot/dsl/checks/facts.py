@@ -116,5 +116,5 @@ class Facts:
 
 
 def people(count: int) -> str:
-    """Return a number of people in words."""
+    """Return a number with its noun, such as ``1 person`` or ``2 people``."""
     return "1 person" if count == 1 else f"{count} people"

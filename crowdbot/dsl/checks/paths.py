@@ -87,7 +87,7 @@ class _PathCheck:
                 yield Diagnostic("E143", text, self.facts.mark("crowd", "agents", i, "x"), hint)
 
     def check_room(self) -> Iterator[Diagnostic]:
-        """Check that there is room where streams begin and come in, in queues, and in portals."""
+        """Check that bodies fit where streams start and enter, in queues, and in portals."""
         for name, stream in self.facts.crowd.streams.items():
             radius = self._stream_radius(stream)
             for field in stream.entrances():
@@ -116,7 +116,7 @@ class _PathCheck:
                     break
 
     def _users_of_portals(self) -> Iterator[tuple[Path, tuple[str, str], float]]:
-        """Yield where each pair of portals is named, the pair, and its people's radius, m."""
+        """Yield the path of each field that names a pair of portals, the pair, and a radius, m."""
         crowd, usual = self.facts.crowd, self._usual_radius
         if crowd.flow is not None:
             yield ("crowd", "flow"), crowd.flow.portals, usual
@@ -189,7 +189,7 @@ class _PathCheck:
                 at = goal
 
     def _outside(self, agent: Agent, i: int, k: int, at: Point, goal: Point) -> Diagnostic | None:
-        """Return the error for one end of a way that lies outside the walls around the other."""
+        """Return the error if walls enclose one end of an agent's way and not the other end."""
         bounds, radius = self.facts.bounds, self._radius(agent)
         for end_name, end, other, *path in (
             ("place", at, goal, *(("goals", k - 1) if k else ("x",))),
@@ -254,7 +254,7 @@ class _PathCheck:
 
     @cached_property
     def _box(self) -> Box:
-        """Return the box around everything that is named, m."""
+        """Return a box around all positions and areas that the scenario names, m."""
         crowd = self.facts.crowd
         points = [(a.x, a.y) for a in crowd.agents]
         points += [goal for a in crowd.agents for goal in a.goals]

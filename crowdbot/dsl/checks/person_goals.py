@@ -38,7 +38,7 @@ def check_person_goals(facts: Facts) -> Iterator[Diagnostic]:
 def _check_not_there(
     facts: Facts, name: str, robot: Robot, goal: ApproachGoal
 ) -> Iterator[Diagnostic]:
-    """Check that a robot does not start in place before an agent who stands, whose task it ends."""
+    """Check that a robot does not already meet its `approach` goal of a standing agent."""
     for agent in agents_of(facts.crowd, goal):
         walks = any(point != (agent.x, agent.y) for point in agent.goals)
         if goal.person.agent is None or agent.heading is None or walks:
@@ -57,7 +57,7 @@ def _check_not_there(
 
 
 def _check_who(facts: Facts, goal: PersonGoal, path: Path) -> Iterator[Diagnostic]:
-    """Check that the person exists, is there at the start, and does not jump."""
+    """Check that the person exists, is present at the start, and uses no portals."""
     person, crowd = goal.person, facts.crowd
     (field,) = person.written
     where = (*path, "person", field)
@@ -108,7 +108,7 @@ def _jumps(crowd: Crowd, goal: PersonGoal) -> bool:
 
 
 def _check_lead(facts: Facts, goal: LeadGoal, path: Path) -> Iterator[Diagnostic]:
-    """Check that the person has no other way."""
+    """Check that a person to be led stands, and has no route to follow."""
     person = goal.person
     found = agents_of(facts.crowd, goal)
     walks = any(a.goals and any(point != (a.x, a.y) for point in a.goals) for a in found)

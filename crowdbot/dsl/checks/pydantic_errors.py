@@ -76,8 +76,8 @@ class TreePlace:
 
     Attributes:
         node: the deepest value on the path.
-        entry: the entry of that value, None at the root and in lists.
-        path: the names followed, discriminator tags dropped.
+        entry: the map entry (key and value) of ``node``; None at the root and in lists.
+        path: names from the root to ``node``, without discriminator tags.
         rest: the part of the path that the tree lacks.
         types: types that the model allows here.
     """
@@ -122,7 +122,7 @@ def mark_of(tree: Node, *path: str | int) -> Mark:
 
 
 def field_names(place: TreePlace, *, first: bool = False) -> list[str]:
-    """Return the fields that the model has at a place; of several models, perhaps the first's."""
+    """Return the fields of all models allowed at a place; with ``first`` of one model only."""
     tag = kind_of(place.node)
     models = [t for t in place.types if _is_model(t) and _has_kind(t, tag)][: 1 if first else None]
     return [n for model in models for n, info in model.model_fields.items() if not info.exclude]
@@ -172,7 +172,7 @@ def _unknown_field(parent: TreePlace, name: str) -> Diagnostic:
 
 
 def _of_another_kind(parent: TreePlace, name: str) -> str:
-    """Return a hint if a kind other than the chosen one has the field."""
+    """Return a hint if only another kind than the chosen one has the field; else ""."""
     tag = kind_of(parent.node)
     kinds = [k for t in parent.types if _is_model(t) for k in _kinds(t) if name in t.model_fields]
     usual = next((t.usual for t in parent.types if hasattr(t, "usual")), None)
@@ -264,7 +264,7 @@ def _bad_value(error: Error, kind: str, place: TreePlace) -> tuple[str, str, str
 
 
 def _as_map(expected: str, place: TreePlace) -> str:
-    """Return how to write a map in place of another value."""
+    """Return a hint on the map that is expected in place of a value; empty if none is."""
     if expected == "a map of names":
         return "write {NAME: …}"
     if expected != "a map of fields":
@@ -277,7 +277,7 @@ def _as_map(expected: str, place: TreePlace) -> str:
 
 
 def _form(pattern: str) -> str:
-    """Describe a regular expression, in words if it is a character set."""
+    """Return the end of a message on a text that does not match a pattern."""
     found = re.fullmatch(r"\^\[A-Za-z0-9(.+)\]\+\$", pattern)
     if found is None:
         return f"does not match {pattern}"

@@ -51,7 +51,7 @@ def areas_connected(place: Place, radius: float, box: Box, start: Outline, goal:
 def first_is_outside(
     place: Place, radius: float, bounds: Rectangle, first: Outline, other: Outline
 ) -> bool:
-    """Return True if a body of a radius (m) can leave ``bounds`` from one outline alone."""
+    """Return True if a body (radius in m) can leave ``bounds`` from ``first`` but not ``other``."""
     (x0, x1), (y0, y1), beside = bounds.x, bounds.y, 1.0 + 2.0 * radius
     box = x0 - beside, x1 + beside, y0 - beside, y1 + beside
     out = spot((x1 + 0.5 * beside, y1 + 0.5 * beside))
@@ -144,7 +144,7 @@ class Reach:
         return bool(self._flood(*self._at(*start))[row] >> column & 1)
 
     def _flood(self, row: int, column: int) -> list[int]:
-        """Return the connected component of a cell."""
+        """Return the connected component of a free cell, as one bit mask per row."""
         for flood in self._floods.values():
             if flood[row] >> column & 1:
                 return flood
@@ -163,7 +163,7 @@ class Reach:
         return self._floods.setdefault((row, column), found)
 
     def _spread(self, seeds: int, free: int) -> int:
-        """Return all cells of a row's free runs that contain a seed."""
+        """Return the bits of a row's runs of free cells that contain a seed bit."""
         upwards = (free & ~(free + seeds)) | seeds
         runs, step = free, 1
         while step < self._columns:
@@ -187,7 +187,7 @@ class Reach:
                 self._free[row] &= ~bits
 
     def _take_around(self, ax: float, ay: float, bx: float, by: float, margin: float) -> None:
-        """Block everything closer to a segment than a margin; in each row this is one run."""
+        """Block cells whose centre is closer to a segment than a margin, m: one run per row."""
         length = math.hypot(bx - ax, by - ay)
         nx, ny = (0.0, 0.0) if length == 0.0 else (-(by - ay) / length, (bx - ax) / length)
         nx, ny = nx * margin, ny * margin
@@ -206,14 +206,14 @@ class Reach:
                 self._free[row] &= ~self._bits(min(xs), max(xs))
 
     def _cells(self, outline: Sequence[Point]) -> list[tuple[int, int]]:
-        """Return row and bits of the cells of an outline; at least one cell."""
+        """Return (row, bits) of the cells in an outline, with the cell of its mean corner."""
         found = list(self._rows_of(list(sides(outline))))
         x, y = (sum(c) / len(outline) for c in zip(*outline, strict=True))
         row, column = self._at(x, y)
         return [*found, (row, 1 << column)] if 0 <= row < len(self._free) else found
 
     def _rows_of(self, listed: Sequence[tuple[Point, Point]]) -> Iterable[tuple[int, int]]:
-        """Yield row and bits of the cells whose centre is inside, by the even-odd rule."""
+        """Yield (row, bits) of the cells with centres within closed sides, by the even-odd rule."""
         ys = [p[1] for side in listed for p in side]
         for row in self._rows_between(min(ys), max(ys)):
             y = self._y0 + (row + 0.5) * self._cell
@@ -234,7 +234,7 @@ class Reach:
 
 
 def _crossing(side: tuple[Point, Point], y: float) -> list[float]:
-    """Return where a side crosses a height; an end belongs to the part below it."""
+    """Return x where a side crosses the horizontal line at ``y``, m; empty if it does not."""
     (ax, ay), (bx, by) = side
     if (ay > y) == (by > y):
         return []

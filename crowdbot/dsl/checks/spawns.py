@@ -43,7 +43,7 @@ def _check_spawn(facts: Facts, name: str, spawn: Spawn) -> Iterator[Diagnostic]:
 
 
 def _check_routes(facts: Facts, spawn: Spawn, subject: str, *path: str) -> Iterator[Diagnostic]:
-    """Check where people go: in one of three ways."""
+    """Check that a spawn has exactly one valid route: goals, portals or ``standing``."""
     if spawn.portals is not None:
         yield from facts.portals(spawn.portals, subject, *path, "portals")
     if spawn.goals is not None:
@@ -77,7 +77,7 @@ def _check_goals(facts: Facts, spawn: Spawn, goals: Goals, *path: str) -> Iterat
 
 
 def _check_room(facts: Facts, spawn: Spawn, area: Area, name: str) -> Iterator[Diagnostic]:
-    """Check that this many people fit inside."""
+    """Check that a spawn's people fit into its area."""
     path, floor = ("crowd", "spawns", name), area.size[0] * area.size[1]
     if spawn.density is not None:
         where = f"spawn '{name}'"

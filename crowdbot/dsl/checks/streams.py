@@ -60,7 +60,7 @@ def _check_place(facts: Facts, place: Place, subject: str, path: Path) -> Iterat
 
 
 def area_of(facts: Facts, place: Place) -> Area | None:
-    """Return the area of a place; None for a name that is not there."""
+    """Return the area of a place; None for the name of a zone that does not exist."""
     if isinstance(place, Area):
         return place
     environment = facts.scenario.environment
@@ -69,7 +69,7 @@ def area_of(facts: Facts, place: Place) -> Area | None:
 
 
 def _check_number(facts: Facts, stream: Stream, name: str, path: Path) -> Iterator[Diagnostic]:
-    """Check that this many people fit where they start."""
+    """Check that a stream's people fit into the area where they start."""
     place, density, count = stream.starts_in, stream.people_per_area, stream.count
     if stream.entering is not None:
         yield from _check_arrivals(facts, stream.entering, name, (*path, "arrivals"))

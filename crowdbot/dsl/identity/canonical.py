@@ -74,7 +74,7 @@ def difference(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]
 
 
 def plain(scenario: Scenario) -> dict[str, Any]:
-    """Return all fields as plain data, with defaults and without minus zero."""
+    """Return all fields as plain data, defaults included; -0.0 becomes 0.0."""
     content: dict[str, Any] = _fold(scenario.model_dump(mode="json"))
     return content
 

@@ -23,7 +23,7 @@ def population_inputs(scenario: Scenario) -> str:
 
 
 def _starts_among_people(scenario: Scenario) -> list[tuple[float, float]]:
-    """Return robots' starts that are so near an area of people that they may move someone."""
+    """Return robots' starts (x, y; m) so near to an area of people that they affect sampling."""
     crowd, zones = scenario.crowd, scenario.environment.zones
     if crowd is None:
         return []

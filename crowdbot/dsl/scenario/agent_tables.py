@@ -1,4 +1,4 @@
-"""``NAME.agents.csv``: the tables of agents of a suite, one below the other.
+"""Read and write ``NAME.agents.csv``: all agents' tables of a suite in one CSV file.
 
 The first column, ``draw``, names the table. Text only: no table is turned into numbers here.
 """
@@ -35,9 +35,9 @@ def split_tables(text: str, name: str) -> dict[str, str]:
 
 
 def is_plain(text: str) -> bool:
-    """Return True if a text without quotes, as `join_tables` writes it, must be a file of tables.
+    """Return True if a quick look proves that `split_tables` can read a text.
 
-    False means that `split_tables` has to find out.
+    False proves nothing: then call `split_tables`.
     """
     if '"' in text or "\r" in text or "\0" in text or not text.startswith("draw,"):
         return False

@@ -88,7 +88,7 @@ def _others(common: Mapping[str, str], values: Values) -> Values:
 
 
 def _places(paths: Iterable[str]) -> tuple[str, ...]:
-    """Return the longest place that each group of paths has in common, sorted."""
+    """Group dotted paths by their first names; return each group's longest common start."""
     groups: dict[tuple[str, ...], list[list[str]]] = {}
     for path in sorted(paths):
         parts = path.split(".")
@@ -106,7 +106,7 @@ def _shared_start(group: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _by_place(places: Sequence[str], values: Values) -> dict[str, Values]:
-    """Return the fields at or below each place; a field is at the longest place that holds it."""
+    """Return place -> fields at or below it; each field is listed at its innermost place only."""
     found: dict[str, Values] = {place: {} for place in places}
     for path, value in values.items():
         parts = path.split(".")

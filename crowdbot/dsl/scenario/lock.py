@@ -78,7 +78,7 @@ class Lock(Spec):
         return list(changed_fields(self.common, self.places, self.scenarios[id_].varied, values))
 
     def text(self) -> str:
-        """Return the file: JSON, one line a scenario, a table or a common field."""
+        """Return the file's JSON text, one line per scenario, table and common field."""
         parts = []
         for name, value in self.model_dump(mode="json").items():
             if isinstance(value, dict) and value:
@@ -108,7 +108,7 @@ class LockFiles:
         return self
 
     def __reduce__(self) -> tuple[type[LockFiles], tuple[Path, str]]:
-        """Let another process read the files itself."""
+        """Pickle the paths only: another process reads the files itself."""
         return LockFiles, (self._document.absolute(), self.spec)
 
     @cached_property
@@ -154,7 +154,7 @@ class LockFiles:
         return split_tables(_read(self.agents_path), self.agents_path.name)
 
     def check_tables(self) -> None:
-        """Check that the file of the tables is such a file, at little cost.
+        """Check that the file of the tables is valid, without splitting it if possible.
 
         Raises:
             InputError: as in `tables`.
@@ -179,7 +179,7 @@ class LockFiles:
 
     @property
     def command(self) -> str:
-        """Return the command that renews the lock."""
+        """Return the command that renews the lock, in quotes, for messages."""
         return f"'crowdbot lock {self.spec}'"
 
 

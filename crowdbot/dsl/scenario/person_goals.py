@@ -59,7 +59,7 @@ class WhichPerson(Spec):
         return self
 
     def __str__(self) -> str:
-        """Return it for messages, such as ``agent 3``."""
+        """Return the person's name for messages, such as ``agent 3``."""
         (name,) = self.written
         value = getattr(self, name)
         text = f"{name} {value}" if name in ("agent", "group") else f"{name} '{value}'"

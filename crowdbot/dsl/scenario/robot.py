@@ -37,7 +37,7 @@ class Goal(TaskGoal):
 
 
 def _zone_unless_given(value: Any) -> Any:
-    """Return a goal whose default kind is written out."""
+    """Add the default ``kind`` to a goal that names none."""
     return {"kind": TaskGoal.usual, **value} if isinstance(value, dict) else value
 
 

@@ -128,7 +128,7 @@ class RobotResponse(Spec):
 
     @property
     def late(self) -> float:
-        """Return the fraction of late ones among people who do not ignore the robot."""
+        """Return the fraction of people who react late, among those who do not ignore the robot."""
         return self.late_fraction
 
 
@@ -210,7 +210,7 @@ class GivingWay(RobotResponse):
 
 
 def _usual(value: Any) -> Any:
-    """Return a response whose default kind is written out."""
+    """Add the default ``kind`` to a response that names none."""
     return {"kind": RobotResponse.usual, **value} if isinstance(value, dict) else value
 
 

@@ -108,7 +108,7 @@ class Goals(Spec):
 
     @property
     def length(self) -> int:
-        """Return the number of points of a route, without the way back."""
+        """Return the number of points of a route; the way back of a loop is not counted."""
         return len(self.areas) if self.count is None else self.count
 
 
@@ -157,11 +157,11 @@ class Spawn(Spec):
         return self
 
     def people(self, floor: float) -> float:
-        """Return how many people an area of some size, m^2, has; not whole for a bad density."""
+        """Return the number of people in an area of ``floor`` m^2; may not be whole."""
         return float(self.count) if self.count else (self.density or 0.0) * floor
 
     def least_radius(self, usual: float) -> float:
-        """Return the radius of the smallest body of its people, m."""
+        """Return the smallest radius that a person of this spawn can have, m."""
         return self.radius.value - self.radius.spread if self.radius else usual
 
     @property

@@ -158,10 +158,10 @@ class Stream(Spec):
     def chains(
         self, area_of: AreaOf, goal_areas: Mapping[str, Place]
     ) -> Iterator[list[tuple[FieldPath, Area | None]]]:
-        """Return areas that are visited in sequence, by field; None for a missing one.
+        """Yield each route as (field, area) in the order of visits; None for a missing area.
 
         Args:
-            goal_areas: all that the crowd has, by name.
+            goal_areas: name -> place of all goal areas of the crowd.
         """
         del goal_areas
         rest = [(field, area_of(place)) for field, place in self.onward()]
@@ -182,8 +182,8 @@ class Stream(Spec):
         """Yield contradictions between fields that are valid one by one.
 
         Args:
-            subject: names the stream in texts.
-            radius: of its people, m.
+            subject: name of the stream in messages.
+            radius: radius of its people, m.
         """
         del subject, radius, area_of
         return iter(())
@@ -210,7 +210,7 @@ class PopulatedStream(Stream):
 
     @property
     def entering(self) -> Arrivals | None:
-        """Arrival times of people; None if all are there from the start."""
+        """Return the arrival times of people; None if all are present from the start."""
         return self.arrivals
 
     @model_validator(mode="after")

@@ -36,7 +36,7 @@ _POINT = (0.01, 0.01)
 
 
 class Lanes(Spec):
-    """Lanes of equal width, side by side across an area's own y."""
+    """Lanes of equal width, side by side along the y axis of an area's frame."""
 
     of: Annotated[int, Ge(1), Le(64)] = Field(description="How many lanes there are.")
     use: Annotated[tuple[Annotated[int, Ge(0)], ...], MinLen(1)] = Field(
@@ -78,7 +78,7 @@ class ThroughStream(PopulatedStream):
 
     @property
     def end(self) -> StreamEnd:
-        """Return their behaviour at the destination."""
+        """Return what people do at the destination."""
         return self.at_destination or ("leave" if self.arrivals else "return")
 
     @property
@@ -87,12 +87,12 @@ class ThroughStream(PopulatedStream):
         return self.start if self.start is not None and not self.arrivals else self.origin
 
     def places(self) -> Iterator[tuple[FieldPath, Place]]:
-        """Return all places that it names, intermediate ones last."""
+        """Return all places that the stream names; intermediate ones come last."""
         yield from super().places()
         yield from self._between()
 
     def entrances(self) -> tuple[str, ...]:
-        """Return the origin, unless everyone starts in `start` and none re-enters; and `start`."""
+        """Return `origin` and `start`, if given; only `start` if no one enters at `origin`."""
         comes_in = self.start is None or self.end == "return"
         return ("origin",) * comes_in + ("start",) * (self.start is not None)
 
@@ -203,7 +203,7 @@ class QueueStream(Stream):
         yield [*reversed(line), *((field, area_of(place)) for field, place in self.onward())]
 
     def misfits(self, subject: str, radius: float, area_of: AreaOf) -> Iterator[Misfit]:
-        """Yield errors for more people than the line has room for, or wider ones than its gap."""
+        """Yield an error if the line is too short for its people, or its gap too small for one."""
         del area_of
         length = sum(math.dist(a, b) for a, b in pairwise(self.line))
         room = math.floor(length / self.gap + 1e-9) + 1
@@ -261,7 +261,7 @@ class WanderingStream(PopulatedStream):
 
     @property
     def starts_in(self) -> Place:
-        """Area of these people at the start."""
+        """Return the area where people start."""
         return self.area
 
     def goal_area_names(self) -> Iterator[tuple[FieldPath, str]]:

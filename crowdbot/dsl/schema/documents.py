@@ -112,7 +112,7 @@ def _document(
     metrics: Iterable[str],
     fields: Mapping[str, Json],
 ) -> Json:
-    """Return a document's outermost fields from their model; some are refined here."""
+    """Return the schema of a document's top-level fields: the model's, some refined."""
     outer = parts.outer(model)
     known = {
         "crowdbot": _VERSION,
@@ -137,7 +137,7 @@ def _head(name: str, title: str, content: Json, parts: Parts, *, canonical: bool
 
 
 def _body(parts: Parts, without: tuple[str, ...]) -> Json:
-    """Return all fields of a scenario, and ``extends``."""
+    """Return the schema of a scenario's fields and ``extends``, all optional."""
     body = parts.root(without=without)
     return {**body, "properties": {"extends": _EXTENDS, **body["properties"]}}
 
@@ -147,7 +147,7 @@ def _override(parts: Parts) -> Json:
 
 
 def _map_of(member: Json, name: str = "^[^.]+$") -> Json:
-    """Return a map of named members; targets of dotted names are left to ``validate``."""
+    """Return the schema of a map of named members; values of dotted keys are not checked."""
     return {
         "type": "object",
         "patternProperties": {name: member, _DOTTED: True},
@@ -156,7 +156,7 @@ def _map_of(member: Json, name: str = "^[^.]+$") -> Json:
 
 
 def _if_plain(then: Json) -> Json:
-    """Return a rule that applies if neither ``extends`` nor a dotted key may supply the rest."""
+    """Return ``then`` as a rule for maps without ``extends`` and dotted keys."""
     plain = {"not": {"required": ["extends"]}, "propertyNames": {"pattern": "^[^.]*$"}}
     return {"if": plain, "then": then}
 

@@ -49,7 +49,7 @@ class Parts:
         self._unions: dict[tuple[str, ...], str] = {}
 
     def root(self, without: Sequence[str]) -> Json:
-        """Return the first root's fields, without some."""
+        """Return the schema of the first root, without the named fields."""
         raw = self._raw[self._roots[0]]
         fields = {k: v for k, v in raw["properties"].items() if k not in without}
         return self._model({**raw, "properties": fields})
@@ -59,7 +59,7 @@ class Parts:
         return self.one_of(self._roots)
 
     def outer(self, model: type[BaseModel]) -> Json:
-        """Return a document's outermost fields with the model's ``required``."""
+        """Return the schema of a document's top-level fields, required as in the model."""
         raw = _without_titles(model.model_json_schema())
         self._raw |= raw.pop("$defs", {})
         made = {k: self._place(v, k) for k, v in raw["properties"].items()}
@@ -159,7 +159,7 @@ class Parts:
         return {"$ref": _REF + self._unions[names]}
 
     def _with_short_form(self, name: str) -> Json:
-        """Return a part, or the single sufficient field if there is a short form."""
+        """Return the schema of a part; if it has a short form, that or the whole map."""
         field = self._raw[name].get("short")
         if field is None or self._canonical:
             return {"$ref": _REF + name}
@@ -178,13 +178,13 @@ class Parts:
 
     # ------------------------------------------------------------------- dotted keys
     def _paths(self, fields: Json) -> Iterator[tuple[str, Json]]:
-        """Yield pattern and schema of every dotted key into some fields."""
+        """Yield pattern and schema of every dotted key that leads into one of the fields."""
         for name, raw in fields.items():
             for path, schema in self._below(raw, name):
                 yield f"^{name}\\.{path}$", schema
 
     def _below(self, raw: Json, name: str) -> Iterator[tuple[str, Json]]:
-        """Yield paths below a value, as patterns without anchors."""
+        """Yield the dotted path (a pattern without anchors) and schema of all below a value."""
         models = self._components(raw) or self._models(raw)
         fields = list(dict.fromkeys(f for m in models for f in self._raw[m]["properties"]))
         for field in fields:

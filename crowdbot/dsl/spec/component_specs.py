@@ -30,7 +30,7 @@ class Agreement(NamedTuple):
     Attributes:
         image: its name.
         cells: number of cells.
-        wrong: number of cells that are floor in one of both only.
+        wrong: number of cells that are floor in either the place or the image, not in both.
         left_out: number of cells of pieces that were left out because they are small.
         where: centres of the first wrong cells, world frame, m.
     """
@@ -105,7 +105,7 @@ class EnvironmentSpec(ComponentSpec):
 
     @property
     def periodic_floor(self) -> Rectangle | None:
-        """Return the floor if it is periodic: who leaves on one side enters on the other."""
+        """Return the floor (m) if it is periodic: leaving on one side is entering on the other."""
         return None
 
     def against_image(self) -> Agreement | None:
@@ -117,7 +117,7 @@ class EnvironmentSpec(ComponentSpec):
         return None
 
     def extent(self) -> Rectangle | None:
-        """Return its bounding box, if its zones do not give it; else None.
+        """Return the environment's bounding box, m; None if the box around its zones is meant.
 
         Raises:
             InputError: as in `place`.
@@ -206,7 +206,7 @@ class NoiseSpec(ComponentSpec):
 
 
 def _as_document(value: Any) -> Any:
-    """Return the document of a kind that is given by its name; other values as they are."""
+    """Convert the bare name of a kind to ``{kind: NAME}``; return other values unchanged."""
     is_kind = isinstance(value, str) and not any(c in value for c in ":/\\ ")
     return {"kind": value} if is_kind and not value.endswith((".yaml", ".yml")) else value
 

@@ -92,7 +92,7 @@ class Place:
     left_out: tuple[Outline, ...] = ()
 
     def bodies(self, height: float) -> Place:
-        """Return obstacles that block people of a height: not above their heads, and no steps."""
+        """Return the place with only the obstacles that block people of a height (m)."""
         return Place(
             faces=tuple(f for f in self.faces if f.stops_crowd and f.heights[0] < height),
             solids=tuple(s for s in self.solids if s.stops_crowd and s.heights[0] < height),
@@ -101,7 +101,7 @@ class Place:
         )
 
     def segments(self) -> Iterator[tuple[Point, Point]]:
-        """Yield the sides of everything that is not round."""
+        """Yield the sides of all walls and solids, but not pillars."""
         for face in self.faces:
             yield from zip(face.points, face.points[1:], strict=False)
         for solid in self.solids:

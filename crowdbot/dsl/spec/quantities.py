@@ -116,7 +116,7 @@ class Quantity:
         )
 
     def _advice(self, text: str) -> str:
-        """Return what to write instead."""
+        """Return a hint on what to write instead of a text that is not a quantity."""
         match = _TEXT.fullmatch(text)
         if match is None:
             return f"write a number and a unit, such as '1 {self.si_unit}'"

@@ -60,11 +60,11 @@ class ComponentSpec(Spec):
         return value
 
     def beside(self, name: str, file: Path) -> Mapping[str, str]:
-        """Return further assets that a file names and the document does not, by field.
+        """Return field -> path of further assets, which the file of an asset names itself.
 
         Args:
-            name: field of the found asset.
-            file: its location.
+            name: field of the asset whose file was found.
+            file: location of this file.
         """
         del name, file
         return {}
@@ -101,7 +101,7 @@ class TiltableMount(Mount):
     @model_validator(mode="before")
     @classmethod
     def _level(cls, value: Any) -> Any:
-        """Accept a `Mount` from Python as one without roll and pitch."""
+        """Convert a `Mount` given in Python to one with zero roll and pitch."""
         if isinstance(value, Mount) and not isinstance(value, cls):
             return {name: getattr(value, name) for name in value.model_fields_set}
         return value

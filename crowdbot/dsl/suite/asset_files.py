@@ -21,7 +21,7 @@ class AssetFiles:
     """The assets of one document; each file is hashed once."""
 
     def __init__(self, finder: Finder, committed: Mapping[str, str] | None = None) -> None:
-        """Create it; ``committed``: path -> sha256 of files that have to be as they were."""
+        """Create it; ``committed``: path -> sha256 of files that must be unchanged."""
         self._finder = finder
         self._committed = committed or {}
         self._known: dict[Path, str] = {}
@@ -54,7 +54,10 @@ class AssetFiles:
     def _waiting(
         self, scenario: Scenario
     ) -> Iterator[tuple[tuple[str, ...], Asset, ComponentSpec | None]]:
-        """Yield assets to find. Scenarios share components: a complete one is checked once."""
+        """Yield path, asset and component of assets not found yet.
+
+        Scenarios share components, so a complete component is checked once.
+        """
         figures = {} if scenario.crowd is None else scenario.crowd.body.figures
         for name, figure in figures.items():
             if not figure.is_found:
@@ -71,7 +74,7 @@ class AssetFiles:
     def _found_beside(
         self, asset: Asset, why: str, field: str, mark: Mark, problems: list[Diagnostic]
     ) -> Asset | None:
-        """Return `_found` for a file that another one names; errors say so, and the way out."""
+        """Find an asset that another file names, as `_found`; errors add ``why`` and a remedy."""
         own = list[Diagnostic]()
         found = self._found(asset, mark, own)
         for problem in own:

@@ -89,7 +89,7 @@ def _agree(fields: dict[_Path, Node]) -> bool:
 
 
 def _leaves(path: _Path, node: Node) -> Iterator[tuple[_Path, Node]]:
-    """Yield fields that a label writes, except those for people."""
+    """Yield path and value of fields that a label writes; not ``title`` and ``description``."""
     if not node.entries:
         if path and path[-1] not in _FOR_PEOPLE:
             yield path, node
@@ -106,7 +106,7 @@ def _common(paths: Sequence[_Path]) -> _Path:
 
 
 def _title(base: Node, path: _Path) -> str:
-    """Return the last two names of a path; one of several parts is called by its kind."""
+    """Return the last two names of a path in words; parts such as sensors go by their kind."""
     words, node, above = list[str](), base, ""
     for name in path:
         below = node.child(name)
@@ -119,7 +119,7 @@ def _title(base: Node, path: _Path) -> str:
 
 
 def _value(label: Node, fields: dict[_Path, Node], depth: int) -> str:
-    """Return the only field's value, or each with its name; else the label's title."""
+    """Return the value of a label's field, or each field with name and value; else its title."""
     texts = {path: _text(node) for path, node in fields.items()}
     parts = [
         f"{' '.join(path[depth:]).replace('_', ' ')} {text}".strip() for path, text in texts.items()

@@ -107,7 +107,7 @@ class Expander:
         )
 
     def _unusable(self, bare: _Combination) -> str:
-        """Return why a combination's id cannot be a folder beside earlier ones; empty if it can."""
+        """Return why a combination's id cannot be a folder name beside earlier ones, or ""."""
         if bare.name == self._suite.scenario_id:
             return ""
         first = self._folders.setdefault(bare.name.lower(), bare.name)
@@ -183,7 +183,7 @@ class Expander:
         return self._with_seed(tree, bare.key, bare.draw)
 
     def _set_below(self, reference: Node) -> Node:
-        """Return what ``--set`` changes in a reference; the same node for the same reference."""
+        """Return the ``--set`` changes that apply to a reference, cached per reference."""
         if id(reference) not in self._set_in:
             self._set_in[id(reference)] = _unless_removed(self._set, reference)
         return self._set_in[id(reference)]
@@ -278,7 +278,7 @@ class Expander:
 
 
 def _unless_removed(change: Node, reference: Node) -> Node:
-    """Return a change without entries below parts that a reference removes."""
+    """Return a change without the entries for parts that a reference removes."""
     entries = {}
     for key, entry in change.entries.items():
         over = reference.child(key)

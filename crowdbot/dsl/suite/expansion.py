@@ -28,8 +28,8 @@ class Expansion:
         run_seeds: seeds of the runs that a bundle consists of.
         words: axis -> label -> readable names of the quantity and the value.
         altered: the ``key=value`` texts that ``--set`` applied to each scenario.
-        record: what to record by default; None: not said.
-        round: round of a challenge; None: not said.
+        record: what to record by default; None: not given.
+        round: round of a challenge; None: not given.
     """
 
     suite_id: str

@@ -33,7 +33,7 @@ class _File:
 
 
 def _refuse_xml(text: str, source: Source) -> None:
-    """Raise E011 for XML, of which YAML would only tell the tabs."""
+    """Raise E011 for XML, since the YAML parser's error would be misleading."""
     if text.lstrip("\ufeff \t\r\n").startswith("<"):
         message = "the document is XML, and must be a map of fields in YAML"
         raise SpecError([Diagnostic("E011", message, Mark(source), OTHER_FILES)])
@@ -120,7 +120,7 @@ class Loader:
         return self._extended(replace(root, value=entries), file)
 
     def _below(self, node: Node, file: _File, depth: int) -> Node:
-        """Resolve the innermost maps of a map of maps, ``depth`` deep."""
+        """Resolve ``extends`` in the maps that lie ``depth`` levels below a map."""
         if depth == 0:
             return self._extended(node, file, within=True)
         if not node.entries:
@@ -132,7 +132,7 @@ class Loader:
         return replace(node, value=below)
 
     def _extended(self, node: Node, file: _File, *, within: bool = False) -> Node:
-        """Return a map over the files that it extends; ``within`` a scenario they are parts."""
+        """Return a map merged over the files it extends; ``within``: they hold scenario parts."""
         if "extends" not in node.entries:
             return node
         entries = dict(node.entries)
@@ -152,7 +152,7 @@ class Loader:
         return self._read(found, item.mark)
 
     def _part(self, found: Node, item: Node) -> Node:
-        """Return a part of a scenario; that of a whole document, which is an error."""
+        """Return an included part of a scenario; record an error if it is a whole document."""
         if "crowdbot" not in found.entries:
             return found
         text = f"'{item.value}' is a whole document, and this wants a part of a scenario"
@@ -186,7 +186,7 @@ class Loader:
         return self._unless_cycle(_File(path, name, file.chain), mark)
 
     def _beside(self, name: str, text: str) -> str:
-        """Return the name for messages of a file that another one names."""
+        """Return the name, for messages, of a file given by a path relative to another file."""
         plugin, colon, path = name.rpartition(":")
         if plugin not in self.roots:
             plugin, colon, path = "", "", name

@@ -13,7 +13,7 @@ from crowdbot.errors import did_you_mean, nearest
 
 
 class Installed(Protocol):
-    """The installed components, as far as documents refer to them."""
+    """Interface to the installed components that documents refer to."""
 
     @property
     def metrics(self) -> Collection[str]:

@@ -149,7 +149,7 @@ def _written(axis: Axis) -> dict[_Path, Mark]:
 
 
 def _leaves(path: _Path, node: Node, key: Mark) -> Iterator[tuple[_Path, Mark]]:
-    """Yield fields that an override writes.
+    """Yield path and key position of the fields that an override writes.
 
     A map with a ``kind`` may replace everything below it.
     """

@@ -17,7 +17,7 @@ _TEXT, _LONG_TEXT = 500, 10_000
 
 
 def _moment(text: str) -> str:
-    """Return the text of a day or a moment with a time zone.
+    """Return the text unchanged if it is a day, or a moment with a time zone.
 
     Raises:
         ValueError: it is neither.
@@ -94,7 +94,7 @@ class Round(Spec):
 
     @property
     def text(self) -> str:
-        """Return the round in a line."""
+        """Return a one-line summary of the round."""
         parts = [
             f"opens {_shown(self.opens)}" if self.opens else "",
             f"closes {_shown(self.closes)}" if self.closes else "",

@@ -58,8 +58,8 @@ class ParsedSuite:
         commitment: commitment to the seed, or empty.
         hidden: True until the seed is revealed; then ``seed`` is a node of None.
         run_seeds: seeds of the runs that a bundle consists of.
-        record: what to record by default; None: not said.
-        round: round of a challenge; None: not said.
+        record: what to record by default; None: not given.
+        round: round of a challenge; None: not given.
         files: path -> sha256 of files that a commitment covers.
         included: files that the document extends, and tables of agents.
         problems: errors found so far.
@@ -225,7 +225,7 @@ def _crowd_axes(root: Node, axes: tuple[Axis, ...], problems: list[Diagnostic]) 
 
 
 def _run_seeds(root: Node, problems: list[Diagnostic]) -> tuple[int, ...]:
-    """Return the seeds of an edition; 0 by default."""
+    """Return the seeds of the runs that a bundle consists of; seed 0 by default."""
     seeds = root.child("seeds")
     listed = seeds.child("runs") if seeds else None
     if listed is None or not isinstance(listed.value, tuple):

@@ -46,8 +46,8 @@ def read_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
         most: largest size, bytes.
 
     Raises:
-        OSError: it cannot be read, is something else, such as a pipe, or is larger.
-        ValueError: the path is not one.
+        OSError: it cannot be read, is not a plain file but a pipe or the like, or is larger.
+        ValueError: the path is not a valid one.
     """
     with open_file(path) as file:
         if os.fstat(file.fileno()).st_size > most:
@@ -90,7 +90,7 @@ def open_file(path: Path) -> BinaryIO:
 
 @cache
 def _of_the_kernel() -> frozenset[int]:
-    """Return the devices of files that the kernel makes up; reading some would wait forever."""
+    """Return device ids of virtual file systems, where reading some files would wait forever."""
     return frozenset(p.stat().st_dev for p in _MADE_UP if p.is_mount())
 
 

@@ -221,7 +221,7 @@ def _shown(text: str) -> str:
 
 
 def _clip(text: str) -> str:
-    """Shorten a text that quotes something huge."""
+    """Cut the middle out of a text that is too long for a message."""
     if len(text) <= _LONGEST:
         return text
     return f"{text[: _LONGEST // 2]} … {text[-_LONGEST // 2 :]}"

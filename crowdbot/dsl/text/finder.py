@@ -60,7 +60,7 @@ class Finder:
         return path
 
     def name_of(self, file: Path) -> str:
-        """Return the path by which the top-level file could name a found file."""
+        """Return the path that names a found file when written in the top-level file."""
         target = file.resolve()
         own = {"": [self.top.parent]} | {f"{name}:": fs for name, fs in self.roots.items()}
         for prefix, folders in own.items():

@@ -90,7 +90,7 @@ def undot(
 
 
 def nest(path: Sequence[str], node: Node, mark: Mark) -> Node:
-    """Return a tree with only ``node`` under a path; all keys have one mark."""
+    """Return a tree with only ``node``, under a path; ``mark`` is the position of all keys."""
     for key in reversed(path):
         node = Node(mark, {key: Entry(mark, node)}, implied=True)
     return node
@@ -102,7 +102,7 @@ def _changes_kind(base: Node, over: Node) -> bool:
 
 
 def _nest(parts: list[str], entry: Entry) -> Entry:
-    """Return the entry of ``parts[0]``; each part's mark points at that part of the key."""
+    """Return nested maps for the parts of a dotted key, each with the position of its part."""
     if len(parts) == 1:
         return entry
     dotted, node = ".".join(parts), entry.node

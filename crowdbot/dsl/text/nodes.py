@@ -134,7 +134,7 @@ def _kind(event: Any) -> str:
 
 
 class _Builder:
-    """Recursive descent over events, identified by the names of their classes."""
+    """Build nodes from parser events by recursive descent; events are known by class name."""
 
     def __init__(
         self, text: str, source: Source, problems: list[Diagnostic], shift: int = 0
@@ -246,7 +246,7 @@ class _Builder:
         return False
 
     def _refuse_hidden(self, text: str, mark: Mark) -> None:
-        """Refuse characters that one cannot see, which results and bundles refuse, too."""
+        """Refuse invisible characters, as results and bundles do."""
         if hidden := hidden_character(text):
             hint = "it comes from a web page or an editor; write the text again"
             self._add("E016", f"the text has the hidden character {hidden}", mark, hint)

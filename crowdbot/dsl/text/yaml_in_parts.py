@@ -33,12 +33,12 @@ def _entries(document: dict[str, Any], depth: int) -> Iterator[str]:
 
 
 def _is_word(key: str) -> bool:
-    """Return True if a key fits before its value on one line; long and unusual ones do not."""
+    """Return True if a key is a short ASCII identifier, which YAML writes without quotes."""
     return key.isascii() and key.isidentifier() and len(key) <= _LONGEST
 
 
 def _is_block(document: dict[str, Any]) -> bool:
-    """Return True if each entry has its own lines, as in a block."""
+    """Return True if YAML writes a map in block style: it contains a list or a map."""
     return any(isinstance(value, dict | list) for value in document.values())
 
 
@@ -50,7 +50,7 @@ def _entry(key: str, value: str, depth: int) -> str:
 
 @lru_cache(maxsize=512)
 def _before(key: str, depth: int) -> str:
-    """Return the line before the entries of a map."""
+    """Return the line of a key whose value is a block map: the line above its entries."""
     return _below(key, {"_": []}, depth).partition("\n")[0]
 
 

@@ -122,7 +122,7 @@ def _print_manifest(manifest: Manifest, target: Path) -> None:
 
 
 def _warnings(expansion: Expansion, other_seeds: Sequence[int]) -> list[str]:
-    """Return what the suite's round says, and which seeds are left out."""
+    """Return warnings: conflicts with the suite's challenge round, and seeds left out."""
     lines = _round_lines(expansion)
     if other_seeds:
         seeds = ", ".join(map(str, other_seeds))
@@ -131,7 +131,7 @@ def _warnings(expansion: Expansion, other_seeds: Sequence[int]) -> list[str]:
 
 
 def _round_lines(expansion: Expansion) -> list[str]:
-    """Return what the suite's round says against handing in this bundle now."""
+    """Return why the suite's challenge round would not accept this bundle now, if it would not."""
     if expansion.round is None:
         return []
     lines = [expansion.round.problem(datetime.now(UTC))]

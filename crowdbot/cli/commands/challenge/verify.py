@@ -194,7 +194,7 @@ def _verify(
 def _trusting(
     archive: Archive, registry: Registry, verdict: RerunVerdict, trusted: Sequence[str]
 ) -> RerunVerdict:
-    """Return the verdict; a fine one is withheld if the planner's plugin could have made it."""
+    """Return the verdict; it becomes "untrusted plugin" if the planner's plugin is not trusted."""
     from crowdbot.core.bundle.rerun_verdict import FINE
     from crowdbot.core.campaign.verify import foreign_owners
 

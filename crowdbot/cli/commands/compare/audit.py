@@ -96,7 +96,7 @@ def audit(
 
 
 def _judged(plan: Plan, registry: Registry) -> tuple[Audit, Path]:
-    """Return the audit of a plan's runs, and its file."""
+    """Audit a plan's runs; return the audit and the path of the file written."""
     from crowdbot.core.results.results import Results
     from crowdbot.core.scoring.score_scale import score_scales
     from crowdbot.core.statistics.audit import AUDIT, write_audit
@@ -125,10 +125,10 @@ def _tell_adversaries(
 
 
 def _careful(registry: Registry, more: Sequence[str]) -> dict[str, str]:
-    """Return label -> planner of those besides the baselines that no adversary may be ahead of.
+    """Return label -> planner of careful planners, which adversaries must not outrank.
 
     Raises:
-        InputError: one is an adversary.
+        InputError: a planner in ``more`` is an adversary.
     """
     from crowdbot.core.planning.resolve import resolve_planner
 
@@ -150,7 +150,7 @@ def _seeing_floors(registry: Registry) -> list[str]:
 
 
 def _of(results: Results, plan: Plan) -> Results:
-    """Return the runs and failures of a plan, among all below its root."""
+    """Return the results of a plan's runs only, not of other runs below the same folder."""
     from crowdbot.core.results.score_columns import of_runs
 
     keys = {run.key for run in plan.runs}

@@ -60,7 +60,7 @@ def show(
 
 
 def _makers(runs: Sequence[RunRow]) -> list[dict[str, Any]]:
-    """Return machines with their versions, and how many of the runs each has made."""
+    """Return each combination of machine and package versions, and its number of runs."""
     makers: list[dict[str, Any]] = []
     for run in runs:
         own = {"machine": run.record.machine, "versions": run.record.versions}
@@ -145,7 +145,7 @@ def _made(plan: Plan) -> Results:
 
 
 def _command(request: CampaignRequest, seeds: str) -> str:
-    """Return the command that makes these runs anywhere, without folders of this machine."""
+    """Return the command that repeats these runs on any machine; it contains no local folders."""
     named = {
         "--only": request.only, "--planner": request.planners, "--seeds": [seeds],
         "--plugin": request.plugins,

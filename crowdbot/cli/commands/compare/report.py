@@ -196,7 +196,7 @@ def _tell(
 
 
 def _of_floors(checks: Sequence[FloorCheck]) -> list[str]:
-    """Return a line for each planner, or one for all where the runs are too few for a verdict."""
+    """Return the comparison with floors: a line per planner, or one if all are undecided."""
     reasons = {check.undecided for check in checks}
     if len(checks) > 1 and len(reasons) == 1 and "" not in reasons:
         return [f"no planner can be told from the floors: {reasons.pop()}; the page has the leads"]

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class _Tables(TyperGroup):
-    """The commands for results, with a hint if a folder is given as a command."""
+    """The group of ``crowdbot results``; a folder in place of a command gives a hint."""
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         found = super().get_command(ctx, cmd_name)
@@ -128,7 +128,7 @@ def show(
 def _summaries(
     found: Results, groups: Sequence[str], metrics: Sequence[str] | None, variant: str | None
 ) -> list[dict[str, Any]]:
-    """Return the lines of groups and metrics; without metrics those of the suites, and a few."""
+    """Return a line per group and metric; by default the suites' metrics and the headlines."""
     from crowdbot.core.results.rows import named_metrics
     from crowdbot.core.results.score_columns import metrics_of
     from crowdbot.core.statistics.groups import Grouped
@@ -310,10 +310,10 @@ def ladder(
 
 
 def _ended(found: Results, status: str | None) -> Results:
-    """Return the runs that ended in a way, with their scores; None: all, and failures.
+    """Return runs with this status, and their scores; None: all runs, and failures.
 
     Raises:
-        UnknownNameError: no run ends so.
+        UnknownNameError: there is no such status.
     """
     from crowdbot.core.results.score_columns import of_runs
     from crowdbot.core.types.ending import ATTEMPTED, Ending

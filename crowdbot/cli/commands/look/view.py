@@ -116,7 +116,7 @@ def _play(run: Path, port: int, origins: Sequence[str]) -> None:
 def _replay(
     names: list[str], out: Path | None, reference: str | None, registry: Callable[[], Registry]
 ) -> Path:
-    """Return a run's page; for several runs, with ``out`` or among references a new one."""
+    """Return the path of a replay page: the run's own, or a new one if anything else is asked."""
     folders = [Path(name) for name in names]
     for folder in folders:
         if not folder.is_dir():
@@ -137,7 +137,7 @@ def _replay(
 
 
 def _among(shown: Sequence[ShownRun], folders: Sequence[Path], reference: str) -> list[ShownRun]:
-    """Return the runs with their places among references as a fact."""
+    """Add the fact "Among references" to each run: its rank among the reference scores."""
     from crowdbot.core.results.with_reference import place_of_run, reference_results
     from crowdbot.core.runs.run_record import RunRecord
 

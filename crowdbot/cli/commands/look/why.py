@@ -72,7 +72,7 @@ def _directories(root: Path, planners: Sequence[str], altered: bool) -> list[Pat
 
 
 def _watched(directories: Sequence[Path]) -> Iterable[Path]:
-    """Return the directories with a bar on a terminal."""
+    """Return the directories; iterating over them shows a progress bar on a terminal."""
     from rich.console import Console
     from rich.progress import track
 

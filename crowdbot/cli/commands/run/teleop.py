@@ -115,7 +115,7 @@ def teleop(
 def _driven(
     request: Request, controls: Controls, ports: PagePorts, stop: Callable[[], bool]
 ) -> Run:
-    """Make the run with the person of the page."""
+    """Simulate the run while a person drives the robot from the page."""
     from dataclasses import replace
 
     from crowdbot.core.live.person import teleop as live
@@ -138,7 +138,7 @@ def _driven(
 
 
 def _again(request: Request, controls: Controls, folder: Path) -> Run:
-    """Make the run with the commands of a recorded one."""
+    """Simulate the run again with the joystick readings of a recorded run."""
     from crowdbot.core.live.person import teleop as live
     from crowdbot.core.live.person.recorded_stick import recorded_sticks
 

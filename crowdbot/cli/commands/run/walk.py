@@ -111,7 +111,7 @@ def _point(option: str, text: str | None) -> tuple[float, float] | None:
 def _with_person(
     without: Request, body: Any, planners: list[str] | tuple[()], settings: list[str] | tuple[()]
 ) -> tuple[Request, Mapping[str, BuiltRun]]:
-    """Return the request of the scenario with the person, and the runs of its robots."""
+    """Add the person to the scenario; return the new request, and robot name -> built run."""
     from crowdbot.cli.commands.run.simulate import one_or_several
     from crowdbot.core.live.person.walking import with_person
     from crowdbot.core.planning.given_planner import choose_planner
@@ -136,7 +136,7 @@ def _walked(
     stop: Callable[[], bool],
     speed: float,
 ) -> Run:
-    """Make the run with the person of the page."""
+    """Simulate the run while a person walks in the crowd from the page."""
     import numpy as np
 
     from crowdbot.core.environments.build import build_environment
