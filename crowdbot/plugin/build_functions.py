@@ -51,7 +51,7 @@ MetricSpecT = TypeVar("MetricSpecT", bound=MetricSpec, contravariant=True)
 
 
 class BuildEnvironment(Protocol[EnvironmentSpecT]):
-    """Builds an environment: called when people are placed, drawn, and once per recording."""
+    """Builds an environment: called to place people, to draw, and once per recording."""
 
     def __call__(self, spec: EnvironmentSpecT, /) -> EnvironmentParts:
         """Return plain geometry; the same spec gives the same arrays."""
@@ -120,8 +120,9 @@ class BuildPlannerWithHalf(Protocol[PlannerSpecT]):
     def __call__(self, spec: PlannerSpecT, half: Planner, /) -> Planner:
         """Return a planner that was not reset yet.
 
-        ``half`` takes any observation that this one gets, of which it sees the sensors that it
-        needs; its commands are within the limits. Reset it in ``reset``, call it in ``step``.
+        ``half`` is the built inner planner: reset it in ``reset``, call it in ``step``. Pass it the
+        outer planner's observation, of which it gets only the sensors that it needs; its commands
+        are within the limits.
         """
         ...
 
@@ -132,9 +133,10 @@ class BuildPolicy(Protocol[PolicySpecT]):
     def __call__(
         self, spec: PolicySpecT, costs: Sequence[CompiledCost | NumpyCost], agents: Agents, /
     ) -> CrowdPolicy:
-        """Build the policy; ``costs`` are built, in the document's order.
+        """Return a crowd policy.
 
-        ``agents`` are all agents.
+        ``costs`` are the built cost functions, in the document's order; ``agents`` are all agents
+        of the crowd.
         """
         ...
 

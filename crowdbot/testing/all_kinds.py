@@ -138,7 +138,7 @@ def check_build_resolves(component: Component[Any]) -> None:
 
 
 def _given(component: Component[Any]) -> tuple[str, ...]:
-    """Return what the build function of a component is called with after the spec."""
+    """Return the names of the build function's arguments after the spec."""
     parts = (component.spec.parts_field,) if component.spec.parts_field else ()
     half = ("half",) if getattr(component.spec, "half", "") else ()  # a planner within a planner
     return (*parts, *_FURTHER.get(component.category, ()), *half)
@@ -243,7 +243,7 @@ def _modules_beside(component: Component[Any]) -> list[str]:
 
 @cache
 def _loaded_by(*modules: str) -> frozenset[str]:
-    """Return the modules that a fresh interpreter loads on importing some of one package."""
+    """Return all modules loaded after a fresh interpreter imported modules of one package."""
     path = [*sys.path, *_folder_of(modules[0].partition(".")[0])]
     names = ", ".join(modules)
     code = f"import sys; sys.path[:] = {path!r}; import {names}; print(*sys.modules)"
@@ -253,7 +253,7 @@ def _loaded_by(*modules: str) -> frozenset[str]:
 
 
 def _folder_of(top: str) -> list[str]:
-    """Return the folder of a module or package loaded by path instead of by name."""
+    """Return the folder from which a top-level module was imported; empty without a file."""
     file = getattr(sys.modules.get(top), "__file__", None)
     if file is None:
         return []

@@ -75,7 +75,7 @@ def specs_of(component: Component[Any], registry: Registry) -> list[ComponentSpe
 
 
 def with_zone(registry: Registry, spec: ComponentSpec, at: tuple[float, float]) -> ComponentSpec:
-    """Return an environment's spec with an additional small zone ``kit`` behind a point."""
+    """Return an environment's spec with a small zone ``kit``, 0.3 m from a point towards -x."""
     words = spec.model_dump(mode="json")
     x, y = at
     words["zones"] = {**words["zones"], "kit": {"x": [x - 0.4, x - 0.3], "y": [y, y + 0.1]}}
@@ -110,7 +110,7 @@ def _is_optional(error: BaseException | None, component: Component[Any]) -> bool
 
 
 def _with_record(spec: ComponentSpec) -> ComponentSpec:
-    """Return the spec, with a record of the kit's people if it needs one."""
+    """Return the spec; if it needs recorded people, with a recording made by `_record`."""
     record = spec.record if isinstance(spec, CrowdPolicySpec) else None
     if record is None:
         return spec
@@ -119,7 +119,7 @@ def _with_record(spec: ComponentSpec) -> ComponentSpec:
 
 
 def _with_files(spec: ComponentSpec, registry: Registry) -> ComponentSpec:
-    """Return the spec with the location of each file in a plugin's folder as its path."""
+    """Return the spec with the paths of files in plugins (``NAME:path``) made absolute."""
     named = {n: a.path for n, a in vars(spec).items() if isinstance(a, Asset) and ":" in a.path}
     if not named:
         return spec

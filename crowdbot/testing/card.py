@@ -89,7 +89,7 @@ def rows(text: str) -> Iterator[list[str]]:
 
 
 def _named(text: str) -> Iterator[tuple[str, list[str]]]:
-    """Yield the rows whose first cell is code."""
+    """Yield name and further cells of the rows whose first cell is code in backticks."""
     for name, *cells in rows(text):
         if re.fullmatch(r"`[^`]+`", name):
             yield name.strip("`"), cells
@@ -106,7 +106,7 @@ def _without(metric: MetricComponent[Any]) -> Iterator[str]:
 def _assert_names(
     subject: str, found: list[str], known: tuple[str, ...], may_lack: tuple[str, ...]
 ) -> None:
-    """Check that the known names are there, in their order, except those that may be lacking."""
+    """Check that all known names were found, in order; those in ``may_lack`` may be missing."""
     expected = [n for n in known if n in found or n not in may_lack]
     in_order = [n for n in found if n != OPTIONAL] == [n for n in expected if n != OPTIONAL]
     assert in_order, f"{subject} are {', '.join(found)}; expected are {', '.join(expected)}"

@@ -249,7 +249,7 @@ def _costs(component: Component[Any], registry: Registry | None) -> Iterator[Cos
 
 
 def _candidates(view: CrowdView) -> Array:
-    """Return velocities (N, S, 2): zero, a fan up to 1.9 m/s, and the present one; m/s."""
+    """Return velocities (N, S, 2), m/s: zero, 27 up to 1.9 m/s, and the agent's present one."""
     angles = np.linspace(0.1, 2.0 * math.pi, 9, endpoint=False)
     fan = [s * np.column_stack([np.cos(angles), np.sin(angles)]) for s in (0.4, 1.1, 1.9)]
     common = np.concatenate([np.zeros((1, 2)), *fan])
@@ -258,7 +258,7 @@ def _candidates(view: CrowdView) -> Array:
 
 
 def _total(cost: Cost, view: CrowdView, velocities: Array) -> Array:
-    """Return the unweighted costs (N, S) of this function alone."""
+    """Return the costs (N, S) of one function with weight 1."""
     costs = WeightedCosts([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
     return Evaluator(costs).total(view, velocities)
 
@@ -280,7 +280,7 @@ def _assert_numbers(name: str, total: Array) -> None:
 
 
 def _assert_gradient(cost: CompiledCost) -> None:
-    """Check that nine in ten slopes agree; kinks within a step are allowed."""
+    """Check that the gradient equals finite differences in nine of ten cases; kinks may differ."""
     step, right, count, worst = 1e-5, 0, 0, ""
     around_it = step * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
     alone = replace(cost, weight=1.0)

@@ -46,7 +46,7 @@ def bases_of(cost: CompiledCost, view: CrowdView, velocities: Array) -> Array:
 
 
 def stops_at_budget(cost: CompiledCost, view: CrowdView, velocities: Array) -> str:
-    """Return the error of the excess under a budget; empty if there is none."""
+    """Return what is wrong with ``excess`` when it gets a budget; empty if nothing is."""
     costs = WeightedCosts([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
     for i in range(len(view.agents)):
         only = replace(view, decides=np.arange(len(view.agents)) == i)
@@ -59,7 +59,7 @@ def stops_at_budget(cost: CompiledCost, view: CrowdView, velocities: Array) -> s
 
 
 def above_lower_bound(cost: CompiledCost, view: CrowdView, velocities: Array) -> str:
-    """Return the error of the lower bound of the excess; empty if there is none."""
+    """Return what is wrong with ``lower_bound`` compared with the excess; empty if nothing is."""
     costs = WeightedCosts([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
     for i in range(len(view.agents)):
         only = replace(view, decides=np.arange(len(view.agents)) == i)
@@ -76,7 +76,7 @@ def above_lower_bound(cost: CompiledCost, view: CrowdView, velocities: Array) ->
 
 
 def forgets_work(cost: CompiledCost, view: CrowdView, velocities: Array) -> bool:
-    """Return True if costs do not depend on data of another agent in ``work``."""
+    """Return True if costs do not depend on the values in ``work`` before ``prepare``."""
     costs = WeightedCosts([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
     evaluator = Evaluator(costs)
     first = evaluator.total(view, velocities)  # gives ``work`` its size
@@ -103,7 +103,7 @@ def _budgets(costs: WeightedCosts, agent: Rows[AgentRecord], velocities: Array) 
 
 
 def _each_agent(costs: WeightedCosts, view: CrowdView) -> list[tuple[int, Rows[AgentRecord]]]:
-    """Numbers and records, of one row each, of the agents that decide."""
+    """Return row number and one-row record of each agent that decides."""
     around = costs.surroundings(view)
     found = []
     for b in range(around.table.shape[0]):

@@ -37,9 +37,9 @@ def check_answer_is_numbers(component: Component[Any], registry: Registry | None
 def check_nobody_and_one(component: Component[Any], registry: Registry | None = None) -> None:
     """The policy returns numbers for edge cases.
 
-    No one, one person, and people who are absent, stand, overlap or have arrived.
+    These are no one, one person, and people who are absent, stand, overlap or have arrived.
 
-    If this fails, the policy took something for granted about the crowd that is named.
+    If this fails, the policy makes an assumption that the named crowd does not satisfy.
     """
     for make in _factories(component, registry):
         for name, view in crowd_views.odd_views().items():
@@ -182,7 +182,7 @@ def _assert_answer(name: str, make: Factory, view: CrowdView) -> None:
 
 
 def _will(make: Factory, view: CrowdView) -> Array:
-    """Return the accelerations (N, 2), m/s^2, that a newly made policy wants."""
+    """Return the accelerations (N, 2), m/s^2, that a newly built policy requests."""
     return desired_acceleration(make(view.agents), view)
 
 
@@ -192,7 +192,7 @@ def _assert_same(one: Array, two: Array, change: str) -> None:
 
 
 def _walked(make: Factory, rate: float) -> Array:
-    """Return positions (T, N, 2) of three people in 1.5 s who hardly meet, m."""
+    """Return positions (T, N, 2), m, of three people who walk far apart for 1.5 s."""
     agents = Agents.of(
         x=[0.0, 0.5, 1.0],
         y=[0.0, 3.0, 6.0],

@@ -49,7 +49,7 @@ def random_view(seed: int, *, dt: float = 1.0 / 16.0, count: int = 8) -> CrowdVi
 
 
 def odd_views() -> dict[str, CrowdView]:
-    """Return valid but rare crowds."""
+    """Return name -> valid but rare crowd, such as one without people."""
     view = random_view(0)
     still = np.zeros_like(view.velocity)
     close = view.position.copy()
@@ -105,7 +105,7 @@ def turned(view: CrowdView, angle: float) -> CrowdView:
 
 
 def turn(vectors: Array, angle: float) -> Array:
-    """Return vectors (..., 2) rotated counter-clockwise."""
+    """Return vectors (..., 2) rotated counter-clockwise by an angle, rad."""
     c, s = math.cos(angle), math.sin(angle)
     return np.asarray(vectors @ np.array([[c, s], [-s, c]]))
 

@@ -17,7 +17,7 @@ from crowdbot.testing.worlds import World, random_world
 
 @cache
 def worlds() -> Mapping[str, World]:
-    """Return name -> world that lacks something metrics often assume."""
+    """Return name -> world without something that metrics often assume, such as people."""
     world = random_world(7)
     run = world.run
     robot, agents = run.robot, run.agents
@@ -54,7 +54,7 @@ def worlds() -> Mapping[str, World]:
 
 @cache
 def on_thresholds() -> Mapping[str, World]:
-    """Return name -> world in which the last digit would decide a comparison."""
+    """Return name -> world exactly on a threshold, where a rounding error could decide."""
     t = np.arange(101) / 16.0
     still = np.zeros(101)
     trembling = 0.43 + 0.05 * (np.arange(101) % 2).astype(np.float64)
@@ -94,7 +94,7 @@ def _references(run: Trajectories, changed: Trajectories) -> World:
 
 
 def _meeting(t: Array, robot_x: Array, x: Array, y: Array) -> Trajectories:
-    """Return a robot (0.18 m) on the x axis and one person (0.25 m).
+    """Return a run of a robot (radius 0.18 m) on the x axis and one person (radius 0.25 m).
 
     Velocities follow from the positions.
     """

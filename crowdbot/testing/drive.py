@@ -59,7 +59,7 @@ class Course:
 
     @property
     def task(self) -> Task:
-        """Return the start and a goal zone of 1 m x 1 m."""
+        """Return the task: its start, and a goal zone of 1 m x 1 m."""
         x, y = self.goal
         half = 0.5
         zone = np.array([[x - half, y - half], [x + half, y - half],
@@ -78,12 +78,12 @@ AT_GOAL = Course(start=Pose(7.0, 0.0, 1.0), walls=_ROOM, people=_PEOPLE[:0])
 
 
 def sensors_for(needs: Sequence[str] | None, registry: Registry) -> dict[str, Any]:
-    """Return installed sensors that match a planner's needs, by the requested name.
+    """Return need -> an installed sensor of this kind or category.
 
-    Without needs, a lidar. Odometry is always the robot's true pose.
+    If ``needs`` is None, a lidar. Odometry is left out: it is always the robot's true pose.
 
     Raises:
-        SkipTest: a need is the name of a sensor on a particular robot.
+        SkipTest: no installed sensor has the kind or category of a need.
     """
     sensors = {}
     for need in ("lidar",) if needs is None else needs:
@@ -108,10 +108,10 @@ def _answering(need: str, registry: Registry) -> Any:
 
 
 class Driven:
-    """A planner behind its host, on a course; a privileged planner gets the ground truth.
+    """A planner called by its host, on a course; a privileged planner gets the ground truth.
 
     Attributes:
-        host: checks and clamps commands, and counts.
+        host: calls the planner; checks and clamps its commands, and counts them.
         commands: all commands so far.
     """
 

@@ -52,7 +52,7 @@ class FreeFloorGrid:
         return gap
 
     def is_free(self, point: Array) -> bool:
-        """Return True if a point is free."""
+        """Return True if a point lies outside of all obstacles."""
         return bool(self.clearance(np.asarray(point)[None])[0] > 0.0)
 
     def holds(self, point: Array) -> bool:

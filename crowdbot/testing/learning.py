@@ -94,7 +94,7 @@ def check_rewards_are_apart(component: Component[Any], registry: Registry | None
 def check_a_second_look_is_the_same(
     component: Component[Any], registry: Registry | None = None
 ) -> None:
-    """A second look without a step in between gives the same observation.
+    """A second observation without a step in between is the same as the first.
 
     If this fails, add to what you remember only where ``stepped`` is true.
     """
@@ -143,7 +143,7 @@ def _rewards(
 
 
 def _sights(worlds: int) -> list[RobotInputs]:
-    """Five times: free, walls near, people near and far, no one, a new episode in between."""
+    """Return random inputs of five steps for all worlds; world 1 starts a new episode midway."""
     rng, sights = np.random.default_rng(3), []
     for step in range(5):
         people = rng.uniform(-8.0, 8.0, (worlds, 12, 5))
@@ -192,7 +192,7 @@ def _changes(worlds: int) -> list[StepChange]:
 
 
 def _only(given: Any, w: int) -> Any:
-    """Return a sight or a change of one world."""
+    """Return an observation or reward input reduced to world ``w``."""
     names = type(given).__dataclass_fields__
     values = {name: getattr(given, name) for name in names}
     readings = values.pop("readings", None)

@@ -184,7 +184,7 @@ def _assert_footprint(corners: Array) -> None:
 
 
 def _rig(spec: ComponentSpec, model: RobotModel) -> tuple[Any, Any]:
-    """Return the robot in its own plant on an empty floor, and the shapes' query object."""
+    """Return the robot in a Drake plant on an empty floor, and Drake's inspector of its shapes."""
     from pydrake.geometry import SceneGraph
     from pydrake.systems.framework import DiagramBuilder
 
@@ -198,7 +198,7 @@ def _rig(spec: ComponentSpec, model: RobotModel) -> tuple[Any, Any]:
 
 
 def _extent(rig: Any, shapes: Any) -> tuple[Array, Array, float]:
-    """Return least and largest x and y of all collision shapes from the base, and the top, m."""
+    """Return least (2,) and largest (2,) x, y of the shapes, base frame, and their top; m."""
     plant = rig.plant
     context = plant.CreateDefaultContext()
     base = plant.GetBodyByName(rig.robot.base, rig.model).body_frame()

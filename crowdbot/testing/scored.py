@@ -24,8 +24,8 @@ Scored = Mapping[str, Score]
 def with_signals(component: Component[Any], world: World) -> World:
     """Return a world whose run has the signals that a metric declares to read.
 
-    They are smooth in time, the same at every sampling rate, and between 0 and 1. A run of a
-    metric about the person of a task has such a task: to follow the first of its people.
+    They are smooth in time, the same at every sampling rate, and between 0 and 1. For a
+    metric about the person of a task, the run gets the task to follow its first person.
     """
     if getattr(component, "about_person", False):
         world = replace(world, run=_with_person_task(world.run))
@@ -57,7 +57,7 @@ def scores_of(component: Component[Any], world: World) -> dict[str, Score]:
 
 
 def metric_of(component: Component[Any]) -> MetricComponent[Any]:
-    """Return the component, which must be a metric's."""
+    """Return the component as a metric; an AssertionError if it is not one."""
     assert isinstance(component, MetricComponent), (
         f"'{component.kind}' is not a MetricComponent; use declare_metric"
     )

@@ -40,14 +40,14 @@ _DISTANCES = ("infrared", "lidar", "ultrasound")
 
 
 class Probe:
-    """A sensor with the memory that core manages for it."""
+    """A sensor to be read repeatedly, with its memory array, which a simulation would keep."""
 
     def __init__(self, sensor: Any) -> None:
         self.sensor, self.info = sensor, sensor.info()
         self.memory = np.zeros(self.info.memory)
 
     def __call__(self, scene: Scene, k: int, rng: np.random.Generator | None = None) -> Array:
-        """Return reading number k of a drive, with the robot at its pose in `POSES`."""
+        """Return reading ``k`` of a drive, with the robot at ``POSES[k]``."""
         rng = rng or sensor_rng(0, "robot", "sensor", k)
         args = (scene, pose_of(k), k / self.info.rate, rng)
         if self.info.memory:
@@ -272,7 +272,7 @@ def _sensors(component: Component[Any], registry: Registry | None) -> Iterator[A
 
 
 def _draws(sensor: Any) -> bool:
-    """Return True if a drive uses random numbers."""
+    """Return True if the sensor draws random numbers in any reading of a drive."""
     probe, scene, drew = Probe(sensor), crowded(), False
     for k in range(len(POSES)):
         rng, untouched = (sensor_rng(0, "robot", "sensor", k) for _ in range(2))

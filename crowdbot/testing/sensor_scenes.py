@@ -42,7 +42,7 @@ _GOAL = (8.0, 1.0)
 
 
 def context() -> SensorContext:
-    """Return a disc on two wheels, and a task whose goal is ahead of it."""
+    """Return a sensor context: a round robot with two wheels, and a task with its goal ahead."""
     corners = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]
     task = Task(
         start=POSES[0],

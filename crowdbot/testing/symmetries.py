@@ -36,7 +36,7 @@ def without_velocities(run: Trajectories) -> Trajectories:
 def move(
     run: Trajectories, *, angle: float = 0.0, shift: tuple[float, float] = (0, 0), mirror: int = 1
 ) -> Trajectories:
-    """Mirror about the x axis (``mirror=-1``), turn by ``angle`` (rad), translate (m)."""
+    """Return the run mirrored about x (``mirror=-1``), rotated (``angle``, rad) and shifted (m)."""
     c, s = math.cos(angle), math.sin(angle)
 
     def rotate(x: Any, y: Any) -> tuple[Any, Any]:
@@ -47,7 +47,7 @@ def move(
         return x + shift[0], y + shift[1]
 
     def points(rows: Array | None) -> Array | None:
-        """Return columns x, y or x0, y0, x1, y1."""
+        """Return transformed rows of points (x, y) or segments (x0, y0, x1, y1), m."""
         if rows is None:
             return None
         pairs = [place(rows[:, i], rows[:, i + 1]) for i in range(0, rows.shape[1], 2)]
@@ -81,7 +81,7 @@ def move(
 
 
 def _side(side: PersonSide, mirror: int) -> PersonSide:
-    """Return the side of a person to go on, in a mirror."""
+    """Return the side of a person on which to go; left and right are swapped if mirrored."""
     swapped: dict[PersonSide, PersonSide] = {"left": "right", "right": "left", "either": "either"}
     return swapped[side] if mirror < 0 else side
 
@@ -177,7 +177,7 @@ def scale_masses(run: Trajectories, factor: float) -> Trajectories:
 
 
 def perturb(run: Trajectories, size: float, seed: int) -> Trajectories:
-    """Return the run with every position, angle and velocity changed by up to ``size``."""
+    """Return the run with random errors up to ``size`` (m, rad, m/s) on poses and velocities."""
     rng = np.random.default_rng(seed)
 
     def off(values: Array) -> Array:

@@ -57,7 +57,7 @@ def tiny_scenario(registry: Registry, **changes: Any) -> Scenario:
 
 
 def scenario_in(registry: Registry, spec: ComponentSpec, at: tuple[float, float]) -> Scenario:
-    """Return a scenario with a robot at a point, and a goal zone around it not yet reached."""
+    """Return a scenario whose robot starts at a point, with a goal zone behind it."""
     words = with_zone(registry, spec, at).model_dump(mode="json")
     return tiny_scenario(registry, environment=words, start=(*at, 0.0), zone="kit")
 

@@ -116,10 +116,11 @@ def straight_world(seed: int, rate: float) -> World:
 
 
 def portal_world(seed: int, *, through: bool) -> World:
-    """Return a person near the robot and three who walk a kilometre away. With or without portals.
+    """Return a world with one person near the robot and three who walk a kilometre away.
 
-    ``through``: halfway these jump 40 m, flagged as a teleport, and begin another trip. No
-    velocities are recorded. A metric that counts a teleport as motion distinguishes the worlds.
+    ``through``: the three pass a portal halfway: they jump 40 m, flagged as a teleport, and begin
+    another trip. No velocities are recorded. A metric that counts a teleport as motion
+    distinguishes the two worlds.
     """
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, 6.0, 1.0 / _RATE)
@@ -267,7 +268,7 @@ def _commands(rng: np.random.Generator, t: Array) -> Commands:
 
 
 def _answers(rng: np.random.Generator) -> Questionnaires:
-    """Return complete answers, except for an item that does not apply."""
+    """Return answers to the questionnaires; one item of each USE scale is not answered."""
     weights = rng.permutation([5.0, 4.0, 3.0, 2.0, 1.0, 0.0]).tolist()
     use = {name: rng.integers(1, 8, count).astype(float) for name, count in USE_ITEMS.items()}
     return Questionnaires(

@@ -7,7 +7,7 @@ import io
 import os
 import sys
 
-#: What stands for characters that a terminal cannot show.
+#: Replacements of characters that a terminal cannot show.
 _PLAIN = {
     "–": "-", "—": "-", "−": "-", "·": "*", "×": "x", "²": "^2", "³": "^3", "°": " deg", "…": "...",
     "±": "+-", "≤": "<=", "≥": ">=", "≈": "~", "√": "sqrt", "µ": "u", "μ": "u", "σ": "sigma",

@@ -59,7 +59,7 @@ class FilmOptions:
 
 
 def write_film(to: str, recording: Path, out: Path, options: FilmOptions) -> None:
-    """Write a film, or a picture of chosen times.
+    """Write a film, or pictures at chosen times.
 
     Raises:
         InputError: the recording has no such times.

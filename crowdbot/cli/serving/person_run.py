@@ -30,7 +30,7 @@ class PersonRun:
 
     Attributes:
         record: which sensors are simulated.
-        duration: of people alone, s.
+        duration: duration of a run without a robot, s; None: default.
     """
 
     spec: str
@@ -48,7 +48,7 @@ class PagePorts:
     """Ports of the person's page and of the servers for other programs.
 
     Attributes:
-        port: of the page; ``open_`` shows it in the browser.
+        port: port of the page; ``open_`` shows it in the browser.
         rosbridge, zenoh: port and endpoint for programs; None: closed.
         rate: times real time.
     """
@@ -121,7 +121,7 @@ def page_of(seat: Seat, mode: Mode, scenario: str, ports: PagePorts) -> Iterator
 
 
 def show_end(server: PageServer, run: Run) -> None:
-    """Tell all pages how a run ended."""
+    """Show on all open pages how a run ended."""
     when = run.record.goal_time or run.record.sim_time
     server.show_end(
         reason=run.record.status.sentence.format(t=when),

@@ -54,7 +54,7 @@ def step_policy_of(
     """Return the timing of a live run's steps.
 
     Args:
-        times: of ``budget``, ``hold`` and ``wait``, s.
+        times: values of ``budget``, ``hold`` and ``wait``, s.
 
     Raises:
         UsageError: two options contradict each other, or a number is out of range.
@@ -235,7 +235,7 @@ def _services(session: LiveSession) -> dict[str, Service]:
 
 
 def needs(extra: str, *modules: str) -> None:
-    """Make sure that the libraries of an extra are installed.
+    """Check that the libraries of an optional extra are installed.
 
     Raises:
         MissingLibraryError: one of them is not.

@@ -23,7 +23,7 @@ def verify_references(
         text: the argument of `verify`.
         registry: the installed components.
         size: number of runs; None: all.
-        seed: of the sample; None: random.
+        seed: seed of the sample; None: random.
 
     Raises:
         InputError: it is a damaged file of reference scores.

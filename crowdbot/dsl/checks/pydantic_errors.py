@@ -271,7 +271,7 @@ def _as_map(expected: str, place: TreePlace) -> str:
         return ""
     if any(hasattr(t, "category") for t in place.types):
         return f"write {{kind: {place.node.value if isinstance(place.node.value, str) else '…'}}}"
-    # Those of the usual one of a union, which needs no kind.
+    # The fields of a union are those of the default kind, since documents need not name that kind.
     names = [name for name in field_names(place, first=True) if name != "kind"]
     return f"its fields: {', '.join(names)}" if 0 < len(names) <= _FEW else ""
 

@@ -68,7 +68,7 @@ def table_hash(table: str) -> str:
 
 
 def _used_columns(table: list[list[str]]) -> list[list[str]]:
-    """Drop the columns after `LAST_COLUMN` in which a table has nothing."""
+    """Return a table without those columns after `LAST_COLUMN` that are empty in all rows."""
     header, *rows = table
     if LAST_COLUMN not in header:
         return table

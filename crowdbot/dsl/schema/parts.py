@@ -21,7 +21,7 @@ Json = dict[str, Any]
 
 _REF = "#/$defs/"
 _NULL: Json = {"type": "null"}
-#: The scenario's field that no document writes there; its abstract type is useless.
+#: Field of a scenario that documents write elsewhere; its abstract type cannot be in a schema.
 _ELSEWHERE = "references"
 
 

@@ -66,7 +66,10 @@ def _corners(
 
 
 def places_in(area: Area, radius: float) -> Iterator[tuple[float, float]]:
-    """Yield positions all over an area where a body can enter, 20 cm apart up to 20 m; m."""
+    """Yield a grid of positions (m) over an area, ``radius`` from its sides where possible.
+
+    The spacing is at most 20 cm along sides of up to 20 m, and larger along longer ones.
+    """
     half = [max(0.0, 0.5 * side - radius) for side in area.size]
     counts = [min(_MOST_PLACES, math.ceil(2.0 * h / _APART)) for h in half]
     for i in range(counts[0] + 1):

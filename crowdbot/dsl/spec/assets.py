@@ -1,4 +1,4 @@
-"""Files that components read, such as a record of people.
+"""Files that components read, such as recorded tracks of people.
 
 A document names a file by a path, as in ``extends``. The path from the top-level document and the
 SHA-256 of the content are part of the scenario and of its hash; the file's location on this machine

@@ -32,9 +32,10 @@ def challenge_page(
 ) -> None:
     """Write the site of a challenge: dates, rules, how to take part, scenarios, leaderboard.
 
-    Dates and rules are the suite's round. Pictures show the first draw of each condition, without
-    people while the draws are hidden. Replays show the best and a typical run of the three best
-    planners that have recordings. The suite's files and the bundles are copied into the folder.
+    Dates and rules come from the suite's round. Pictures show the first draw of each
+    condition, without people while the draws are hidden. Replays show the best and a typical run
+    of the three best planners that have recordings. The suite's files and the bundles are
+    copied into the folder.
     While a judge only receives planners, give its folder: the page tells how many there are.
 
     Example: crowdbot challenge-page challenge.yaml bundles --out site

@@ -34,9 +34,9 @@ def judge(
 ) -> None:
     """Receive sealed planners, and run them once the suite's draws are open.
 
-    While the draws are hidden, submissions are logged only; later ones are refused. Each planner
-    runs by itself; the same command goes on after an interruption. The log is checked by
-    crowdbot judge-log. A budget of steps bounds how long a slow planner keeps the others waiting.
+    While the draws are hidden, submissions are logged only; later ones are refused. Planners
+    run one after another; after an interruption, the same command continues. crowdbot judge-log
+    checks the log. A step budget limits the time that a slow planner takes.
 
     Example: crowdbot judge challenge.yaml submissions --out judged --jobs 4
     """

@@ -177,7 +177,7 @@ def failures(
     traceback: Annotated[bool, switch("--traceback", "Print Python's tracebacks, too.")] = False,
     as_json: _Json = False,
 ) -> None:
-    """List the runs that a campaign failed to make.
+    """List the runs of a campaign that failed.
 
     Example: crowdbot results failures --runs runs --traceback
     """

@@ -199,7 +199,7 @@ def _data_set(to: ExportFormat, folder: Path, target: Path, robot: str | None) -
 
 
 def _scenes(runs: Sequence[Path], robot: str | None) -> Iterator[tuple[Trajectories, str]]:
-    """Yield the tracks of run directories, and their scenarios."""
+    """Yield the trajectories and the scenario id of each run directory."""
     from crowdbot.core.recording.recording import Recording
     from crowdbot.core.runs.run_directory import RECORDING
 
