@@ -127,7 +127,7 @@ def seen_sides(parts: EnvironmentParts, x: float, y: float) -> dict[int, bool]:
 
 
 def _along(walls: Array, x: float, y: float, c: float, s: float) -> Array:
-    """Return the distance (S,) along a ray to each wall; inf if it misses."""
+    """Return the distance (S,) along a ray to each wall, m; inf if the ray misses it."""
     ax, ay = walls[:, 0] - x, walls[:, 1] - y
     ex, ey = walls[:, 2] - walls[:, 0], walls[:, 3] - walls[:, 1]
     cross = c * ey - s * ex

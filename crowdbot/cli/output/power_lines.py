@@ -18,7 +18,7 @@ ALL = "all conditions"
 def lines_of(
     results: Results, name: Name, sizes: Sequence[float], tests: int, axis: str = ""
 ) -> list[dict[str, Any]]:
-    """Return a line for each pair of planners and condition, or label of an axis.
+    """Return a line for each pair of planners, then for its conditions, or labels of an axis.
 
     Raises:
         UsageError: a size is not above 0, or the score is a rate.

@@ -63,8 +63,8 @@ def read_bundles(
         accept: differences that are accepted.
         keys: public keys of organisers, besides the user's own.
         audits: audits of suites; default: those of the folder.
-        suites: the organisers' suites: only their bundles count, by the dates and the form of
-            their rounds; none: bundles of every suite, by what they say themselves.
+        suites: the organisers' suites: only their bundles are kept, and their rounds decide which
+            are accepted; none: bundles of every suite.
 
     Raises:
         InputError: there is no bundle, or none of these suites.

@@ -79,7 +79,7 @@ def of_each_suite(results: Results, look: Callable[[Results], T]) -> dict[str, T
     """Return suite -> result of a function for its results; stderr names suites left out.
 
     Raises:
-        CrowdbotError: the first suite's, if there is something wrong with all of them.
+        CrowdbotError: the function failed for all suites; the error of the first.
     """
     parts = by_suite(results)
     if len(parts) < 2:

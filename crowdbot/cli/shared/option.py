@@ -1,4 +1,4 @@
-"""Options and arguments of commands in their usual form: a name of the value, and its meaning."""
+"""Declare options and arguments of commands with a name for the value and a help text."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import typer
 
 
 def option(metavar: str, text: str, *flags: str) -> Any:
-    """Return an option with a value; its flag is the parameter's name if none is given."""
+    """Return an option with a value; without ``flags``, the parameter's name is the flag."""
     return typer.Option(*flags, metavar=metavar, help=text)
 
 
 def argument(metavar: str, text: str) -> Any:
-    """Return an argument."""
+    """Return a positional argument."""
     return typer.Argument(metavar=metavar, help=text)
 
 

@@ -95,7 +95,7 @@ class TreePlace:
 
 
 def locate(tree: Node, loc: Iterable[str | int], model: type[BaseModel] | None = None) -> TreePlace:
-    """Follow a path, dropping pydantic's discriminator tags."""
+    """Follow an error's path as far as the tree has it, without discriminator tags."""
     node, entry, path, rest = tree, None, [], list(loc)
     types: tuple[Any, ...] = (model,) if model else ()
     while rest:
@@ -300,7 +300,7 @@ def _describe(node: Node) -> str:
 
 
 def _step(annotation: Any, key: str | int, tag: object) -> list[Any]:
-    """Return the types below one type, under a key; ``tag`` is the kind of the map entered."""
+    """Return the types that a type allows under a key; ``tag`` is the ``kind`` of the map."""
     if _is_model(annotation):
         field = annotation.model_fields.get(str(key)) if _has_kind(annotation, tag) else None
         return _flat(field.annotation) if field else []

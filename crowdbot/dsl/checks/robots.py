@@ -133,7 +133,7 @@ def _check_robot(facts: Facts, place: Place, name: str, robot: Robot) -> Iterato
 def _check_way_to_person(
     facts: Facts, place: Place, name: str, robot: Robot, goal: PersonGoal
 ) -> Iterator[Diagnostic]:
-    """Check that a way leads to where an agent starts, or to one of the places where it walks."""
+    """Check that a way leads to the start of the goal's agent, or to one of its goals."""
     start, radius = robot.task.start[:2], robot.model.half_width
     agents = [agent for agent in agents_of(facts.crowd, goal) if not agent.portals]
     body = max((agent.radius or facts.crowd.body.radius for agent in agents), default=0.0)

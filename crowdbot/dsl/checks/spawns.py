@@ -13,7 +13,7 @@ from crowdbot.dsl.text.diagnostics import Diagnostic
 
 
 def check_spawns(facts: Facts) -> Iterator[Diagnostic]:
-    """Check every spawn and every goal area by itself, and the names between them."""
+    """Check every spawn and every goal area, and that the names they refer to exist."""
     areas = facts.crowd.goal_areas
     for name, goal in areas.items():
         path = ("crowd", "goal_areas", name)

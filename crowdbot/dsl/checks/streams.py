@@ -14,7 +14,7 @@ from crowdbot.dsl.text.diagnostics import Diagnostic
 
 
 def check_streams(facts: Facts) -> Iterator[Diagnostic]:
-    """Check every stream by itself, and the names between it and the rest of the crowd."""
+    """Check the fields of every stream, its names, its places, and that its people fit."""
     for name, stream in facts.crowd.streams.items():
         path: Path = ("crowd", "streams", name)
         subject = f"stream '{name}'"

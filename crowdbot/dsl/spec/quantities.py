@@ -202,7 +202,7 @@ def _near(name: str, units: dict[str, Fraction]) -> str | None:
 
 @lru_cache(maxsize=4096)  # a suite contains the same few amounts thousands of times
 def _in_si(dimension: str, text: str) -> float | str:
-    """Return the nearest float in SI units, or the error; empty: it is not a quantity."""
+    """Return the nearest float in SI units, or an error text; "" if it is not a quantity."""
     match = _TEXT.fullmatch(text)
     number, blank, unit = match.groups() if match else ("", "", "")
     factor = UNITS[dimension].get(plain_unit(unit))

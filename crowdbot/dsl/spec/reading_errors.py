@@ -1,4 +1,6 @@
-"""Errors that can be added to the readings of any sensor: Gaussian, offset, peak (annex of D7.3).
+"""Errors that can be added to readings of any sensor: Gaussian, offset, peak.
+
+Source: annex of the report CrowdBot D7.3.
 
 Their numbers are in the units of the reading, which are SI units.
 """

@@ -84,9 +84,9 @@ class AssetFiles:
         return found
 
     def _found(self, asset: Asset, mark: Mark, problems: list[Diagnostic]) -> Asset | None:
-        """Return a found asset.
+        """Return an asset with its file located; None without one.
 
-        None if missing, or if a moved scenario identifies it by content.
+        A missing file is an error, unless the document gives the hash of its content.
         """
         file = self._finder.find(asset.path, mark)
         if isinstance(file, Diagnostic):

@@ -3,7 +3,7 @@
 An organiser publishes ``suite.commitment``, the hash of a seed, a salt and the document, and
 reveals ``suite.seed`` and ``suite.salt`` when tuning to them is no longer possible. Readers of the
 revealed document can check them against the commitment. The salt prevents finding the seed by brute
-force: there are at most 2**63 seeds, and people like small ones.
+force: there are at most 2**63 seeds, and small seeds are likely.
 """
 
 from __future__ import annotations

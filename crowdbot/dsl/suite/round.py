@@ -114,6 +114,6 @@ def _shown(text: str | None) -> str:
 
 
 def _at(text: str, alone: time) -> datetime:
-    """Return a moment; of a day without a time, its first or last."""
+    """Return the moment of a text; for a day without a time, ``alone`` is the time, UTC."""
     found = datetime.fromisoformat(text)
     return found if found.tzinfo is not None else datetime.combine(found.date(), alone, UTC)

@@ -36,7 +36,7 @@ def challenge_page(
     condition, without people while the draws are hidden. Replays show the best and a typical run
     of the three best planners that have recordings. The suite's files and the bundles are
     copied into the folder.
-    While a judge only receives planners, give its folder: the page tells how many there are.
+    While a judge only receives planners, give its folder: the page shows their number.
 
     Example: crowdbot challenge-page challenge.yaml bundles --out site
     """

@@ -65,7 +65,7 @@ def export_map(
 
 
 def _inside(scenario: Scenario) -> list[tuple[float, float]]:
-    """Return positions on the floor: starts of robots, or else centres of zones."""
+    """Return positions on the floor, m: starts of robots, or else centres of zones."""
     starts = [robot.task.start[:2] for robot in scenario.robots.values()]
     zones = scenario.environment.zones.values()
     middles = [(0.5 * (z.x[0] + z.x[1]), 0.5 * (z.y[0] + z.y[1])) for z in zones]
