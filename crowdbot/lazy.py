@@ -1,4 +1,4 @@
-"""Packages whose names are imported on first use, from the modules that their stubs name."""
+"""Import a package's names on first use, from the modules that its stub file names."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def stub_names(file: str) -> Mapping[str, Home]:
 
 
 def lazy_names(package: str, names: Mapping[str, Home]) -> Callable[[str], Any]:
-    """Return the ``__getattr__`` of a module with these names."""
+    """Return a module's ``__getattr__`` that imports these names on first use."""
 
     def get(name: str) -> Any:
         if name not in names:

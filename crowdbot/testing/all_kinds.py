@@ -207,7 +207,7 @@ def _validated(component: Component[Any], example: Any) -> ComponentSpec:
 
 
 def _fields(model: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, FieldInfo]]:
-    """Yield dotted name and field of a spec and its parts; ``kind`` is excluded."""
+    """Yield dotted name and info of all fields, nested ones included, without the own ``kind``."""
     for name, field in model.model_fields.items():
         if prefix or name != "kind":
             yield prefix + name, field

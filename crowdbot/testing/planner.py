@@ -102,7 +102,7 @@ CHECKS: tuple[Callable[..., None], ...] = (
 def _drivers(
     component: Component[Any], registry: Registry | None
 ) -> Iterator[Callable[[Course], Driven]]:
-    """Yield, per example, a function that puts a new planner on a course."""
+    """Yield, for each example, a function that builds a new planner and starts it on a course."""
     known = around(component, registry)
     sensors = sensors_for(getattr(component.spec, "needs", None), known)
     for spec in specs_of(component, known):

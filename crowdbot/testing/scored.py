@@ -57,7 +57,7 @@ def scores_of(component: Component[Any], world: World) -> dict[str, Score]:
 
 
 def metric_of(component: Component[Any]) -> MetricComponent[Any]:
-    """Return the component as a metric; an AssertionError if it is not one."""
+    """Return the component; raise AssertionError if it is not a metric."""
     assert isinstance(component, MetricComponent), (
         f"'{component.kind}' is not a MetricComponent; use declare_metric"
     )

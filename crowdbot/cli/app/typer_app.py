@@ -172,7 +172,7 @@ _Quiet = Annotated[
 
 
 def _common(verbose: _Verbose = False, quiet: _Quiet = False) -> None:
-    """Add the options that every command has."""
+    """Declare the options that every command has; their values are not used here."""
 
 
 def _verbosity_params() -> list[Any]:

@@ -86,7 +86,7 @@ def _drake() -> DoctorFinding:
 
 
 def _egl() -> DoctorFinding:
-    """Check EGL, which only colour images of cameras need."""
+    """Check for EGL, which only cameras' colour images require."""
     for name in ("libEGL.so.1", "libEGL.so"):
         try:
             ctypes.CDLL(name)

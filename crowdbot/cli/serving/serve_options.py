@@ -28,7 +28,7 @@ _Server = Callable[["LiveSession", "StepPolicy", "Listen"], "LiveConnection"]
 
 @dataclass(frozen=True, kw_only=True)
 class Listen:
-    """The address to listen at, and the access rules."""
+    """Options of the servers: addresses, access rules and protocols."""
 
     host: str
     port: int

@@ -317,7 +317,7 @@ def nested_model(annotation: Any) -> type[BaseModel] | None:
 
 
 def _flat(annotation: Any) -> list[Any]:
-    """Return members of a union without annotations."""
+    """Return the members of a union, with ``Annotated`` removed."""
     origin = get_origin(annotation)
     if origin is Annotated:
         return _flat(get_args(annotation)[0])

@@ -1,6 +1,6 @@
 """Path finding of people, chosen by ``kind``; straight by default.
 
-The parameters of `mesh` are proposed here; see decision 0020 for their effect.
+The parameters of `mesh` are crowdbot's own choice; decision 0020 describes their effect.
 """
 
 from __future__ import annotations

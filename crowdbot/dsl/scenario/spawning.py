@@ -172,13 +172,13 @@ class Spawn(Spec):
 
     @property
     def at_goal(self) -> Literal["stop", "remove", "loop", "portal"]:
-        """Behaviour of people at the end of their route."""
+        """Return what people do at the end of their route."""
         if self.portals:
             return "portal"
         return "stop" if self.goals is None else self.goals.at_goal
 
     def goal_area_names(self) -> Iterator[tuple[tuple[str | int, ...], str]]:
-        """Return all names in `crowd.goal_areas` that it uses, by field."""
+        """Yield the field and the name of each goal area that the spawn uses."""
         areas = self.goals.areas if self.goals else ()
         return ((("goals", "areas", i), name) for i, name in enumerate(areas))
 

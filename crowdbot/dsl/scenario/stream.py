@@ -110,7 +110,7 @@ class Stream(Spec):
     # ------------------------------------------------------------------- how many
     @property
     def people_per_area(self) -> float | None:
-        """Return the density of a stream that is given by one, 1/m^2."""
+        """Return the density, 1/m^2, if the stream is given by a density; else None."""
         return None
 
     @property
@@ -120,7 +120,7 @@ class Stream(Spec):
 
     @property
     def starts_in(self) -> Place | None:
-        """Return the area of people at the start, for `count` or a density; None without one."""
+        """Return the area that people fill at the start; None if the stream has no such area."""
         return None
 
     # --------------------------------------------------------------------- places
@@ -132,7 +132,7 @@ class Stream(Spec):
                 yield (field,), place
 
     def goal_area_names(self) -> Iterator[tuple[FieldPath, str]]:
-        """Return all names in `crowd.goal_areas` that it uses, by field."""
+        """Return all names in `crowd.goal_areas` that the stream uses, by field."""
         return iter(())
 
     def points(self) -> Iterator[tuple[FieldPath, tuple[Point, ...]]]:
@@ -205,7 +205,7 @@ class PopulatedStream(Stream):
 
     @property
     def people_per_area(self) -> float | None:
-        """Return the density, 1/m^2, of a stream that is given by one."""
+        """Return the density, 1/m^2, if the stream is given by a density; else None."""
         return self.density
 
     @property

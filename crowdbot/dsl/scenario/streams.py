@@ -146,7 +146,7 @@ class DirectionsStream(Stream):
 
     @property
     def people_per_area(self) -> float | None:
-        """Return the density, 1/m^2, of a stream that is given by one."""
+        """Return the density, 1/m^2, if the stream is given by a density; else None."""
         return self.density
 
     @property

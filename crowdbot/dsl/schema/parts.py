@@ -66,7 +66,7 @@ class Parts:
         return {**raw, "properties": made}
 
     def named(self, name: str, schema: Json) -> Json:
-        """Return a reference to a definition that is written once."""
+        """Store a schema as a definition under a name; return a reference to it."""
         self._made[name] = schema
         return {"$ref": _REF + name}
 
@@ -115,7 +115,7 @@ class Parts:
         return made
 
     def _model(self, raw: Json) -> Json:
-        """Return the schema of a map of fields as written."""
+        """Return the schema of a map of fields as users write it."""
         if "properties" not in raw:
             return raw
         made = {k: v for k, v in raw.items() if k not in ("required", "short", "left_out")}
@@ -150,7 +150,7 @@ class Parts:
         return raw
 
     def _union(self, names: tuple[str, ...], field: str) -> Json:
-        """Return a reference to one definition per set of components, named after a field."""
+        """Return a reference to the definition of a set of components; equal sets share it."""
         if names not in self._unions:
             others = (f"{field}{i}" for i in count(2))
             free = next(n for n in chain([field], others) if n not in self._made)
@@ -203,13 +203,13 @@ class Parts:
                 yield f"[^.]+\\.{path}", schema
 
     def _components(self, raw: Json) -> list[str]:
-        """Return the definitions of components allowed at a place; empty elsewhere."""
+        """Return the names of the components' definitions that a schema allows; often none."""
         listed = raw.get("oneOf", [raw])
         names = [_short(one["$ref"]) for one in listed if "$ref" in one]
         return [n for n in names if "const" in self._raw[n].get("properties", {}).get("kind", {})]
 
     def _models(self, raw: Json) -> list[str]:
-        """Return the definitions of plain maps of fields allowed at a place."""
+        """Return the names of the definitions of plain maps of fields that a schema allows."""
         names = [_short(one["$ref"]) for one in raw.get("anyOf", [raw]) if "$ref" in one]
         return [n for n in names if "properties" in self._raw[n]]
 

@@ -71,7 +71,7 @@ class Component(Generic[S_co]):
         return f"{package}:cards/{self.kind.rpartition('.')[2]}.md" if package else ""
 
     def has_card(self) -> bool:
-        """Return True if there is a card; requires one file system access."""
+        """Return True if the component has a card; accesses the file system once."""
         if not self.card_place:
             return bool(self.card)
         try:

@@ -228,7 +228,7 @@ class PlannerSpec(ComponentSpec):
 
     @property
     def wants(self) -> tuple[str, ...]:
-        """Return categories of optional sensors, used where the robot has them."""
+        """Return categories of optional sensors, which the planner reads if the robot has them."""
         return ()
 
 
@@ -269,7 +269,7 @@ class ObservationSpec(ComponentSpec):
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """Return the sensors that it reads, by name or category."""
+        """Return the names or categories of the sensors that the observation reads."""
         return ()
 
 

@@ -187,7 +187,7 @@ def _variant(spec: type[MetricSpec], name: str, options: VariantOptions) -> Metr
 
 
 def _summary(spec: type[MetricSpec], symbol: str) -> str:
-    """Return the symbol, and the first line of the docstring as part of a sentence."""
+    """Return the default summary: the symbol, and the first line of the spec's docstring."""
     line = inspect.cleandoc(spec.__doc__ or "").partition("\n")[0].rstrip(".")
     starts_with_acronym = line[:2].isupper()
     text = line if starts_with_acronym else line[:1].lower() + line[1:]

@@ -84,7 +84,7 @@ def _too_many(axes: Sequence[Axis], problems: list[Diagnostic], mark: Mark) -> b
 
 
 def combinations(base: Node, axes: Sequence[Axis]) -> Iterator[Combination]:
-    """Yield all combinations; those with equal first labels share their merged trees."""
+    """Yield all combinations; those whose leading labels are equal share merged trees."""
     if not axes:
         yield Combination((), base)
         return

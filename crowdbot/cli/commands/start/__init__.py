@@ -1,1 +1,1 @@
-"""Commands to begin with: the machine, the documents, scenarios that are checked."""
+"""First commands: check the machine, read the documentation, list and check scenarios."""
