@@ -43,7 +43,7 @@ class NavEnv(Env):
         """Begin an episode.
 
         Args:
-            seed: from now on; None: the next episode of the present seed.
+            seed: new seed of the episodes; None: the next episode of the present seed.
             options: ``level`` of the curriculum.
 
         Raises:
@@ -68,11 +68,11 @@ class NavEnv(Env):
         )  # fmt: skip
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle the arguments alone: the copy has not begun yet."""
+        """Pickle only the arguments; `reset` an unpickled copy before its first step."""
         return self._made, ()
 
     def render(self) -> Any:
-        """Return a picture (H, W, 3) uint8 of the world from above, if its mode makes pictures."""
+        """Return an image (H, W, 3) uint8 of the world from above; None unless ``rgb_array``."""
         pictures = self._one.render()
         return None if pictures is None else pictures[0]
 
@@ -82,6 +82,6 @@ class NavEnv(Env):
 
 
 def _first(infos: dict[str, Any]) -> dict[str, Any]:
-    """Return the values of the only world."""
+    """Return the values of world 0 from the ``infos`` of a vector environment."""
     found = {name: value[0] for name, value in infos.items() if not name.startswith("_")}
     return {n: v.item() if isinstance(v, np.generic) else v for n, v in found.items()}

@@ -34,9 +34,9 @@ class EnvSetup:
     Attributes:
         levels: scenarios of each level, of which an episode has one.
         observation, reward: their specs.
-        draws: number of different draws of people for each scenario, which come again; None: new
-            ones in every episode.
-        edition: True for the people of the suite, as it is judged.
+        draws: number of different draws of people per scenario, which are reused; None: a new
+            draw in every episode.
+        edition: True to use the suite's own draw of people, as its scored runs do.
         spread: of starts and goals; None: those of the scenarios.
         ends_at_contact: True if a contact with a person ends the episode.
     """
@@ -182,7 +182,7 @@ def spec_of(registry: Registry, category: str, given: Any) -> Any:
 
 
 def _check_alike(first: Blueprint, other: Blueprint) -> None:
-    """Check that two scenarios fit one observation and one action.
+    """Check that two scenarios agree in number of robots, limits, period and lidar shapes.
 
     Raises:
         InputError: they do not.

@@ -20,8 +20,8 @@ class Episode:
 
     Attributes:
         scenario: id.
-        root: root of its draw of people; None: those of the suite.
-        key: of its noise.
+        root: root seed of its draw of people; None: the suite's own draw.
+        key: key of the random numbers of its noise.
         place: seed of its start and goal.
     """
 
@@ -77,7 +77,7 @@ class EpisodeCourse:
         return stream_seed(self._seed, str(self._number), f"rl.{stream}")
 
     def _root(self, scenario: str) -> int | None:
-        """Return the root of the draw of people."""
+        """Return the root seed of the draw of people; None: the suite's own draw."""
         setup = self._setup
         if setup.edition:
             return None

@@ -1,4 +1,4 @@
-"""Runs as a data set of Minari."""
+"""Write runs as a Minari data set."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def write_minari(runs: Sequence[Path], out: Path, registry: Registry) -> None:
 
 
 def _buffer(number: int, episode: RunEpisode) -> Any:
-    """Return an episode as Minari keeps it."""
+    """Return an episode as an `EpisodeBuffer` of Minari."""
     last = len(episode.rewards) - 1
     return found("minari.data_collector").EpisodeBuffer(
         id=number,
@@ -70,7 +70,7 @@ def _buffer(number: int, episode: RunEpisode) -> Any:
 
 @contextmanager
 def _root(folder: Path) -> Iterator[None]:
-    """Let Minari write into a folder."""
+    """Set the root folder of Minari's data sets while the context is open."""
     before = os.environ.get(_ROOT)
     os.environ[_ROOT] = str(folder.resolve())
     try:

@@ -1,7 +1,7 @@
-"""Runs as episodes for learning without a simulator.
+"""Convert runs to episodes for offline reinforcement learning.
 
-An observation is ``tracks``, the nearest people as they are; an action is the command that the
-robot was given, as shares of its limits; the reward is ``progress``.
+An observation is ``tracks`` with the true states of the nearest people; an action is the robot's
+command, as shares of its limits; the reward is ``progress``.
 """
 
 from __future__ import annotations

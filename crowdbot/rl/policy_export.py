@@ -124,7 +124,7 @@ def _actor(env: Any) -> Any:
     """Return the robot of an environment.
 
     Raises:
-        InputError: it is not one of ours.
+        InputError: it is not an environment of `crowdbot.rl`.
     """
     inner = getattr(env, "worlds", getattr(env, "unwrapped", env))
     rollout = getattr(inner, "rollout", None)

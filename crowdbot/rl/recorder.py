@@ -92,7 +92,7 @@ class EpisodeRecorder(Wrapper):
 
 
 def _next_number(folder: Path | None) -> int:
-    """Return the number after those of the pages in a folder."""
+    """Return one more than the highest number of the replay pages in a folder."""
     pages = [] if folder is None else folder.glob("episode-*.html")
     numbers = (page.stem.removeprefix("episode-") for page in pages)
     return max((int(n) + 1 for n in numbers if n.isdecimal()), default=0)

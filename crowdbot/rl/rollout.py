@@ -23,11 +23,11 @@ class Rollout:
 
     Args:
         seeds: (W,) of the worlds.
-        threads: how many step them.
+        threads: number of threads that step them.
 
     Attributes:
         actors: the robots of each world, in order.
-        rows: (W, R, 8) as people feel them, now.
+        rows: (W, R, 8) present states of the robots, see `RobotRecord`.
         scenarios: (W,) id of each world's scenario.
     """
 

@@ -44,7 +44,7 @@ class StableVecEnv(VecEnv):
         return found
 
     def seed(self, seed: int | None = None) -> Sequence[int | None]:
-        """Set the seeds of the next reset: that of the first world, and the numbers after it."""
+        """Set the seeds of the next reset: world k gets ``seed + k``."""
         self._next_seed = seed
         return [None if seed is None else seed + k for k in range(self.num_envs)]
 
@@ -53,7 +53,7 @@ class StableVecEnv(VecEnv):
         self.worlds.set_level(level)
 
     def step_async(self, actions: Any) -> None:
-        """Keep the actions of the next step."""
+        """Store the actions for `step_wait`."""
         self._given = actions
 
     def step_wait(self) -> tuple[Any, Any, Any, list[dict[str, Any]]]:
@@ -106,7 +106,7 @@ class StableVecEnv(VecEnv):
         return [False] * len(self._indices(indices))
 
     def _indices(self, given: Any) -> list[int]:
-        """Return the numbers of worlds; None: all."""
+        """Return indices of worlds as a list; all for None."""
         if given is None:
             return list(range(self.num_envs))
         return [given] if isinstance(given, int) else list(given)

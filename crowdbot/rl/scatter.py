@@ -44,7 +44,7 @@ class Spread:
 
 
 def _check_reach(world: BatchWorld, tasks: Sequence[Task]) -> None:
-    """Check that no wall lies between places and those of the scenario.
+    """Check that no wall separates a start or goal from that of the scenario.
 
     Raises:
         InputError: one does.

@@ -28,7 +28,7 @@ class NavVectorEnv(VectorEnv):
             ignores its action; ``SameStep``: the step that ends it also begins the next one, and
             its last observation is ``infos["final_obs"]``; ``Disabled``: `reset` with
             ``options={"reset_mask": …}`` begins the next one.
-        threads: how many step the worlds.
+        threads: number of threads that step the worlds.
         max_episode_steps: ends an episode before its time is over; None: the task's time limit.
         render_mode: ``rgb_array``: `render` returns a picture of each world; ``human``: a window
             shows the first world at each step.
@@ -201,7 +201,7 @@ class NavVectorEnv(VectorEnv):
         return mask
 
     def render(self) -> tuple[Any, ...] | None:
-        """Return pictures (H, W, 3) uint8 of all worlds from above, if the mode makes pictures."""
+        """Return images (H, W, 3) uint8 of all worlds from above; None unless ``rgb_array``."""
         if self.render_mode == "human":
             self._show()
         if self.render_mode != "rgb_array":
@@ -209,7 +209,7 @@ class NavVectorEnv(VectorEnv):
         return tuple(picture(self.rollout, w) for w in range(self.num_envs))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle the arguments alone: the copy has not begun yet."""
+        """Pickle only the arguments; `reset` an unpickled copy before its first step."""
         return self._made, ()
 
     def close_extras(self, **kwargs: Any) -> None:
@@ -224,5 +224,5 @@ class NavVectorEnv(VectorEnv):
 
 
 def _nowhere(like: Mask) -> Mask:
-    """Return a mask that is False everywhere."""
+    """Return a mask of the same shape that is False everywhere."""
     return np.zeros_like(like)

@@ -81,7 +81,7 @@ class PersonFinder:
     """Base of finders: knows only each person's pose at the start.
 
     Args:
-        target: who it is.
+        target: the person or group.
         rng: errors of poses.
     """
 
@@ -100,7 +100,7 @@ class PersonFinder:
         """Update the estimate with the data of one step."""
 
     def _with_errors(self, poses: Array) -> Array:
-        """Return poses (M, 3) as the robot gets them."""
+        """Return poses (M, 3), m and rad, with random errors added."""
         goal = self.target.goal
         deviation = [goal.position_error, goal.position_error, goal.heading_error]
         noisy: Array = poses + self.rng.normal(size=poses.shape) * deviation
@@ -175,7 +175,7 @@ def _differs(member: KnownPerson, t: float, tracks: Tracks) -> Mask:
 
 
 def _follow(member: KnownPerson, t: float, tracks: Tracks, row: int) -> None:
-    """Take over what a track says."""
+    """Update a person's position, velocity and heading from a track."""
     (member.x, member.y), (vx, vy) = tracks.position[row].tolist(), tracks.velocity[row].tolist()
     new = _NEW if member.moved else 1.0
     member.vx += new * (vx - member.vx)

@@ -36,9 +36,9 @@ class PersonGuide:
 
     Args:
         task: of the robot, from `task_with_person`.
-        target: who it is.
-        lidars: of the robot, for one who tracks.
-        seed: of the errors.
+        target: the person or group.
+        lidars: of the robot, used if it tracks the person.
+        seed: of the random errors of poses.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class PersonGuide:
         self._last: tuple[float, Guidance] | None = None
 
     def update(self, sight: PersonSight) -> Guidance:
-        """Return the planner's guidance for a step; the same again for the same time."""
+        """Return the planner's guidance for a step; repeated calls for one time return the same."""
         if self._last is None or self._last[0] != sight.t:
             self._finder.update(sight)
             self._last = sight.t, self._guidance(sight)
@@ -99,7 +99,7 @@ def task_with_person(task: Task, target: Target) -> Task:
 
     Args:
         task: with the robot's body, and of ``lead`` with the goal zone.
-        target: who it is.
+        target: the person or group.
     """
     person: PersonTask = target.task()
     if person.kind == "lead":

@@ -33,7 +33,7 @@ class Target:
     """The people that a task is about.
 
     Attributes:
-        goal: what the scenario says.
+        goal: the goal as the scenario specifies it.
         rows: (M,) rows of them in the table of people.
         id: (M,) their numbers.
         x, y, heading: (M,) at the start, m and rad.
@@ -124,7 +124,7 @@ def _rows(
     robot: str,
     selection: WhichPerson,
 ) -> NDArray[np.int64]:
-    """Return rows of the people that are meant, drawn from the crowd's seed if need be."""
+    """Return rows of the people that a goal selects, drawn from the crowd's seed if need be."""
     if selection.agent is not None:
         return np.flatnonzero(people.id == selection.agent)
     if selection.group is not None:

@@ -1,7 +1,7 @@
 """Arrays by address: a table of numbers that shows the arrays of many worlds to compiled code.
 
 Worlds differ in size, and a compiled function takes one list of arrays. So each world has a row of
-addresses and shapes, of which compiled code makes arrays again, free of charge.
+addresses and shapes, from which compiled code makes arrays at no cost.
 """
 # Numba reads the arguments of intrinsics from their definitions.
 
@@ -107,13 +107,13 @@ def _viewer(dtype: Any, axes: int) -> Any:
 if TYPE_CHECKING:
 
     def floats1(table: Indices, k: int) -> Array:
-        """Return the (N,) float64 of an entry; the memory is the table's owner's."""
+        """Return entry k as a float64 array (N,) without copying; the table's owner frees it."""
 
     def floats2(table: Indices, k: int) -> Array:
-        """Like `floats1`, (N, M)."""
+        """Like `floats1`, with shape (N, M)."""
 
     def floats3(table: Indices, k: int) -> Array:
-        """Like `floats1`, (N, M, K)."""
+        """Like `floats1`, with shape (N, M, K)."""
 
     def ints1(table: Indices, k: int) -> Indices:
         """Like `floats1`, of int64."""

@@ -13,10 +13,10 @@ _MOST = 1024
 
 
 class Bank:
-    """The pool of one thread.
+    """A pool of worlds for one thread.
 
     Args:
-        keep: True if draws come again, so that worlds are kept.
+        keep: True to keep worlds for reuse, because draws of people repeat.
     """
 
     def __init__(self, *, keep: bool) -> None:

@@ -57,9 +57,9 @@ class Batch:
     """Worlds that are stepped together. Not thread-safe: each thread has its own batch.
 
     Args:
-        worlds: the first ones; `put` replaces any.
-        keys: (W,) of their noise.
-        shared: room for their robots, which others read too; None: its own.
+        worlds: the initial worlds; `put` replaces any.
+        keys: (W,) keys of the random numbers of their noise.
+        shared: drive states in memory that is shared with other batches; None: its own.
 
     Attributes:
         worlds: as they are now.

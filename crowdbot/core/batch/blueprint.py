@@ -37,8 +37,8 @@ class Blueprint:
     """Parts of a world that do not depend on the draw of people.
 
     Attributes:
-        scenario: as it was written.
-        parts: its place.
+        scenario: its scenario.
+        parts: its environment.
         names, models, tasks, tables: of its robots, in order.
         sensors: those that are simulated.
         period: ticks between two commands.
@@ -151,7 +151,7 @@ def _category(spec: Any) -> str:
 
 
 def _check_distances(seen: SeenSensor, where: str) -> None:
-    """Check that a sensor measures distances, and remembers nothing.
+    """Check that a sensor measures distances, and keeps no state between readings.
 
     Raises:
         InputError: it does not.

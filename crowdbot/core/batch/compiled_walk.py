@@ -110,12 +110,12 @@ def walk(
         of_groups: relaxation times (G,), s, and members (G, N).
         parts: from `part_numbers`; time gap, personal space and lanes are used.
         traits: (3, N) avoided radius, preferred speed, largest acceleration.
-        discs, ordered, scratch: room for all discs; their order; who decides, headings, wishes;
-            and a row of zeros.
+        discs, ordered: scratch for all discs, unsorted and sorted.
+        scratch: order of discs, who decides, headings, desired accelerations, a row of zeros.
         blank: a state without people.
         robot: (1, 8), changed in place; its rows at each decision are ``robots`` (K, 4).
         position to present: as of `CompiledWalk.walk`; left as they are.
-        times: between decisions, and the time of all of them, s.
+        times: time between decisions; time at which all of them are evaluated, s.
         found: (3, K, N, 2).
     """
     dt, now = times

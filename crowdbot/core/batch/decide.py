@@ -71,7 +71,7 @@ def look(people: People, crowd: Indices, robots: Array, seen: Array) -> None:
 
 @kernel
 def _begin(people: People, crowd: Indices, group: Indices, seen: Array) -> None:
-    """Write who of a group decides, the robots that it sees, and no choice yet."""
+    """Initialise a group's decision: who decides, which robots are seen, chosen velocities of 0."""
     present, members = mask1(crowd, c.PRESENT), mask1(group, c.G_MEMBERS)
     decides, chosen = mask1(group, c.G_DECIDES), floats2(group, c.G_CHOSEN)
     for i in range(people.shape[0]):

@@ -98,10 +98,10 @@ def _share(
     drive: DriveStateRecord, limits: DriveLimitsRecord, own: Indices,
     x: float, y: float, yaw: float, crab: float, way: float, turn: float,
 ) -> float:  # fmt: skip
-    """Return the share of an arc that is free, 0 to 1.
+    """Return the fraction of an arc that the robot can drive before it touches a wall, 0 to 1.
 
-    Far from walls it is 1 without a look: no point of the outline moves farther than the arc is
-    long and its reach turns.
+    Far from walls this is 1 without a test: no point of the outline moves farther than the length
+    of the arc plus reach times angle of the turn.
     """
     farthest = abs(way) + abs(turn) * limits.reach
     drive.clear -= farthest
@@ -116,7 +116,7 @@ def _share(
 
 @inline_kernel
 def _arc(robot: RobotRecord, heading: float, way: float, turn: float) -> None:
-    """Move along an arc; the heading of the robot is left as it is."""
+    """Move the robot's position along an arc that starts at ``heading`` (rad); its yaw stays."""
     half = 0.5 * turn
     chord = way * (math.sin(half) / half if half != 0.0 else 1.0)
     robot.x += chord * math.cos(heading + half)

@@ -1,4 +1,4 @@
-"""ImaginedCrowd: people in a planner's prediction, who decide with a crowd's own policy."""
+"""ImaginedCrowd: people in a planner's prediction, who decide by the policy of a crowd."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ def parts_of(worlds: int, threads: int, people: int) -> list[tuple[int, int]]:
     Args:
         worlds: how many, one or more.
         threads: how many at most.
-        people: in each world, about.
+        people: approximate number in each world.
     """
     count = max(1, min(threads, worlds))
     head = (count - 1) * _HEAD_START / (people + 1)
@@ -36,7 +36,7 @@ def parts_of(worlds: int, threads: int, people: int) -> list[tuple[int, int]]:
 
 
 class Batches:
-    """Batches of worlds, one for each thread; a single thread needs no others.
+    """Batches of worlds, one for each thread; a single one runs in the calling thread.
 
     Args:
         worlds, keys: as of `Batch`.

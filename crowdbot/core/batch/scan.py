@@ -139,7 +139,7 @@ def _disturb(ranges: Array, noise: Array, tick: int, key: np.uint64) -> None:
 def _add(
     ranges: Array, r: int, k: int, noise: Array, normal: float, tick: int, key: np.uint64, n: int
 ) -> None:
-    """Add noise to one beam, of all or of some that are struck."""
+    """Add noise to one beam; noise of the kind ``PEAK`` only with its probability."""
     beam = r * ranges.shape[1] + k
     if int(noise[0]) != c.PEAK or uniform(key, beam, tick, n, 1) < noise[3]:
         ranges[r, k] += noise[1] + noise[2] * normal

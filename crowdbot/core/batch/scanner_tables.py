@@ -109,7 +109,7 @@ def scanner_table(
     """Return a table with the addresses of a lidar's arrays; see `SeenSensor.compiled`.
 
     Args:
-        seen: what describes it.
+        seen: the lidar.
         models: of all robots.
         scene: people and place, with the other robots.
         pool: scratch.
@@ -181,7 +181,7 @@ def _put_scene(own: ArrayTable, scene: Scene, pool: ScratchPool) -> None:
 
 
 def _put_others(own: ArrayTable, scene: Scene, robot: int, robots: int) -> None:
-    """Put the other robots' surfaces: where they are in the scene, and their local outlines."""
+    """Write the other robots' surfaces: their rows in the scene, and their local outlines."""
     rows, sides = [], [np.zeros((0, 2))]
     plate, disc = scene.fixed_walls, PARTS * len(scene.people_radius) + scene.fixed_pillars
     others = [k for k in range(robots) if k != robot]

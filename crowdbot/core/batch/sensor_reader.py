@@ -32,12 +32,12 @@ class SensorReader:
     Its random numbers are those of a run whose seed is the key of the world's noise.
 
     Args:
-        seen: what describes it.
+        seen: the sensor.
         names, models: of all robots.
         scene: people and place, with the other robots.
 
     Attributes:
-        table: where its latest reading is shown, as that of a scanner which is never due.
+        table: scanner table with its latest reading; its rate is 0, so it is never due.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class SensorReader:
         )
 
     def is_steady(self, period: int) -> bool:
-        """Return True if in steps of this length readings are due only at the end of a step."""
+        """Return True if readings are due only at ends of steps of ``period`` ticks."""
         ratio = self._info.rate * period / TICKS_PER_SECOND
         return ratio.is_integer() or (1.0 / ratio).is_integer()
 

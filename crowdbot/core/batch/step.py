@@ -75,7 +75,7 @@ def step_worlds(
 
 @kernel
 def _command(commands: Array, least: Array, most: Array, drives: Array) -> None:
-    """Set what all robots are to do, and that nothing has happened in this step yet."""
+    """Set the commands of all robots within their limits, and reset the counters of the step."""
     for w in range(drives.shape[0]):
         for r in range(drives.shape[1]):
             drive, low, high = as_record(drives[w, r], DRIVE_STATE), least[w, r], most[w, r]

@@ -1,4 +1,4 @@
-"""Threads that split short work with the thread that asks for it."""
+"""Threads that share short work with the calling thread."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class StepThreads:
     itself, and each other thread is woken through a queue.
 
     Args:
-        helpers: number of threads beside the one that asks.
+        helpers: number of threads besides the calling one.
     """
 
     def __init__(self, helpers: int) -> None:
@@ -33,7 +33,7 @@ class StepThreads:
         """Call ``part(0)`` here and ``part(1)``, ``part(2)``, ... in the other threads, and wait.
 
         Raises:
-            BaseException: the first that a part raised, after all have ended.
+            BaseException: the first one raised by a part, after all parts have ended.
             RuntimeError: the threads have ended.
         """
         if self._orders and not self._finalizer.alive:

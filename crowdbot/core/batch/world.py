@@ -173,7 +173,7 @@ class BatchWorld:
         )
 
     def _scene(self, robot: int) -> Scene:
-        """Return what a robot's lidars see."""
+        """Return the scene of a robot's lidars: walls, pillars, people and other robots."""
         b = self.blueprint
         spec, parts = b.scenario.crowd, b.parts
         agents = None if self.engine is None else self.engine.agents

@@ -115,7 +115,7 @@ def _claimed(archive: Archive, entry: BundledRun) -> ClaimedRun:
 
 
 def _digest_problems(archive: Archive, run: ClaimedRun) -> Iterator[str]:
-    """Yield files that the run's record has another digest of."""
+    """Yield files whose digest differs from the one in the run's record."""
     for file, sha in run.record.digests.items():
         member = archive.manifest.members.get(f"{run.entry.directory}/{file}")
         if member is not None and member.sha256 != sha:

@@ -1,4 +1,4 @@
-"""Check the planner that a bundle names: a name of a component, never a place on a disk."""
+"""Check the planner that a bundle names: the name of a component, never a file path."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def _one(planner: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _names(planner: Mapping[str, Any], kind: str) -> Iterator[str]:
-    """Yield names under which it would pass for another planner."""
+    """Yield a name or label that differs from the planner's kind, and so could mislead."""
     policy = _POLICY.fullmatch(kind)
     expected = policy[1] if policy else kind.rpartition(":")[2]
     name, label = planner.get("name", expected), planner.get("label", expected)

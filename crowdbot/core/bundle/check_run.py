@@ -129,7 +129,7 @@ def _ending_problems(run: ClaimedRun) -> Iterator[str]:
 
 
 def _excused_problems(record: RunRecord) -> Iterator[str]:
-    """Yield contradictions of the draws that are said to be replaced."""
+    """Yield contradictions in the list of replaced draws."""
     excused, most = record.excused, record.replace_draws
     people = [e.realisation for e in excused]
     if len(excused) > most:

@@ -34,7 +34,7 @@ class LeaderboardEntry:
         name: team and planner, unique per entry.
         sha256: hash of the archive.
         verification: the signed verification record beside it, or None.
-        doubt: why a record beside it is not believed.
+        doubt: why the verification record beside it is not trusted.
         rescored: metrics scored again from recordings, since their version has changed.
         outdated: metrics left out, since their version has changed and the bundle cannot be scored
             again.
@@ -68,7 +68,7 @@ class LeaderboardEntry:
         return ""
 
     def in_round(self, held: Round | None) -> LeaderboardEntry:
-        """Return the entry judged by the organisers' dates and form, not by those in the bundle."""
+        """Return the entry with the organisers' closing date and form, in place of the bundle's."""
         fields = {
             "closes": (held and held.closes) or "",
             "handed_in": held.planners if held else "any",

@@ -143,7 +143,7 @@ def _entry(table: Standings, entry: LeaderboardEntry, here: Path) -> dict[str, A
 
 
 def _state(entry: LeaderboardEntry) -> str:
-    """Return who computed an entry, and what an organiser has made again."""
+    """Return who computed an entry, and how many of its runs an organiser repeated."""
     record = entry.verification
     if record is None:
         return "computed by the team, not verified"
@@ -178,7 +178,7 @@ def _groups(table: Standings) -> dict[str, list[dict[str, Any]]]:
 
 
 def _variant(metric: str, variant: str) -> str:
-    """Return the variant, with the metric where the score goes by another name."""
+    """Return the variant; ``metric.variant`` if the score is shown under a name of its own."""
     return variant if name_of(metric, variant) == metric else f"{metric}.{variant}"
 
 

@@ -30,7 +30,7 @@ RULES_TEXT = (
 
 
 def _shown_alike(text: str) -> str:
-    """Return a name that every reader of the leaderboard sees alike.
+    """Return a name after checking that it holds no invisible or bidirectional characters.
 
     Raises:
         ValueError: it contains invisible or bidirectional characters.

@@ -49,9 +49,9 @@ class Rerun:
     """A claimed run of a bundle, and the same run simulated here.
 
     Attributes:
-        record: that of the new run.
-        repeated: trajectory's hash of a third time, where there was one.
-        own: scores without part of calibration runs, where those may be others; None: not asked.
+        record: record of the new run.
+        repeated: hash of the trajectory of a second rerun; None if there was none.
+        own: scores that depend on no calibration run, if these may differ; None: not determined.
     """
 
     claimed: ClaimedRun
@@ -233,9 +233,9 @@ def _other_conditions(rerun: Rerun) -> Iterator[str]:
 
 
 def _other_role(rerun: Rerun) -> Iterator[str]:
-    """Yield a role that the planner does not declare, which its behaviour cannot show.
+    """Yield a claimed role that differs from the planner's; its behaviour cannot show it.
 
-    Also other texts, named metrics and crowds of the same suite and software.
+    For the same software, also fields that the suite defines, such as labels and metrics.
     """
     if rerun.claimed.record.versions == rerun.record.versions:
         for key in _OF_SUITE:

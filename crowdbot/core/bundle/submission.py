@@ -179,7 +179,7 @@ def _listing_problem(infos: list[zipfile.ZipInfo]) -> str:
 
 
 def _is_name(text: str) -> bool:
-    """Return True for a relative path that every file system takes."""
+    """Return True for a relative path that is valid on every file system."""
     return len(text) <= _LONGEST_NAME and _NAME.fullmatch(text) is not None
 
 

@@ -41,12 +41,12 @@ class Job:
         planner, settings: arguments of `resolve_planner`, with absolute file names.
         label: the planner's folder.
         out: absolute root of the results.
-        directory: what is made, relative to ``out``.
-        options: how; the metrics are those of the suite.
+        directory: folder of the result, relative to ``out``.
+        options: run options; the metrics are those of the suite.
         depends_on: keys of the calibration runs that must have ended before.
         cost: expected processor time, s.
         altered: changes to the scenario, from ``--set``.
-        added: it serves only floors and ceilings that the user did not name.
+        added: True if only floors and ceilings that the user did not name need it.
     """
 
     key: str

@@ -41,10 +41,10 @@ class PlannedRun:
 
     Attributes:
         key: its id.
-        status: of the run where it is there and stays, else empty.
-        directory: absolute.
-        axes, position: what its record ought to say.
-        record: what it says; None where the run is not there.
+        status: status of the existing run; empty if it is missing or will be repeated.
+        directory: absolute path.
+        axes, position: values that its record should have.
+        record: its record; None if the run does not exist.
     """
 
     key: str

@@ -34,7 +34,7 @@ class CampaignRequest:
         sample: number of randomly chosen scenarios per suite; None: all.
         planner_settings: ``key=value`` texts, for all planners.
         crowds: names of crowds, in each of which every scenario is run; none: in its own.
-        options: how; ``force`` makes calibration runs again, too.
+        options: run options; ``force`` also repeats calibration runs.
     """
 
     suites: Sequence[str]
@@ -172,7 +172,7 @@ def _check_folders(suites: Sequence[SelectedSuite]) -> None:
 
 
 def _absolute(spec: str) -> str:
-    """Return an absolute path, valid in other working directories; a packaged suite has none."""
+    """Return a file as absolute path, valid in any working directory; other names unchanged."""
     return str(Path(spec).resolve()) if Path(spec).is_file() else spec
 
 

@@ -29,7 +29,7 @@ class State:
         statuses: statuses of existing runs, by key; ``failed`` for failures.
         labels: planner of each run, by key.
         left: jobs that have not ended.
-        busy: jobs of the workers.
+        busy: jobs that workers are executing.
         failures: failed jobs with their outcome.
         began: start in monotonic time, s.
         made: number of new runs.

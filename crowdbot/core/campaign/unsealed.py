@@ -18,7 +18,7 @@ def unsealed(given: str | None, place: PlannerPlace) -> Iterator[tuple[str | Non
 
     Args:
         given: ``FILE.cbs``, ``FILE.py:CLASS``, ``FILE.yaml``, or None.
-        place: where it runs.
+        place: where the planner runs.
 
     Raises:
         InputError: the archive cannot be read or is damaged.

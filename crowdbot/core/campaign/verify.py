@@ -69,7 +69,7 @@ def choose_planner(
         registry: the installed components.
         given: replacement for the kind in the bundle: ``file.py:Class``, or the document of a
             program.
-        place: where it runs.
+        place: where the planner runs.
 
     Raises:
         NotRunnable: it is missing, or differs from the one that made the bundle.

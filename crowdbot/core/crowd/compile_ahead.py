@@ -29,7 +29,7 @@ def crowd_compiled_ahead() -> AbstractContextManager[None]:
 
 
 class _Chooses:
-    """A policy that samples velocities, like most crowds, without cost functions."""
+    """A policy that samples velocities, like those of most crowds, but has no cost functions."""
 
     def __init__(self, agents: Agents) -> None:
         self._sampler = Sampler(Sampling(), WeightedCosts((), agents))

@@ -73,7 +73,7 @@ class CrowdEngine:
         groups: agents with the same policy and the same view, when there is a robot.
         ticks_per_decision: between two decisions.
         parameters: what `tick` takes of people, world and scratch, as numbers.
-        heeds_robots, room, evades: what `evade_robots` takes.
+        heeds_robots, room, evades: arguments of `evade_robots`.
 
     Raises:
         ValueError: an agent refers to a policy or a portal that does not exist.
@@ -176,7 +176,7 @@ class CrowdEngine:
         return not (self._router is not None or others)
 
     def _stays_first(self, rows: Array) -> NDArray[np.bool_]:
-        """Return (N,) agents that start with a stay: at their first goal, which is a point."""
+        """Return (N,) True for agents that begin with a stay at their first goal, a point."""
         a = self.agents
         found: NDArray[np.bool_] = self._people.traits["stays"] != 0.0
         stays = found.copy()
@@ -423,7 +423,7 @@ def _who_plans(agents: Agents, world: CrowdWorld) -> NDArray[np.bool_]:
 def _groups(
     policies: Sequence[CrowdPolicy], agents: Agents, sees_robot: NDArray[np.bool_]
 ) -> list[DecisionGroup]:
-    """Groups of agents, by policy and by whether it is shown robots."""
+    """Return groups of agents by policy, and by whether the policy sees robots."""
     groups = []
     for number, policy in enumerate(policies):
         for sees in (True, False):

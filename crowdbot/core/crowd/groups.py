@@ -143,7 +143,7 @@ def _pull(
 
 @kernel
 def _nearest(step: float, width: float) -> float:
-    """Return the shortest of the ways to a person on a torus of a width, which may be infinite."""
+    """Return a difference of coordinates, m, to the nearest image on a torus of this width."""
     if math.isinf(width):
         return step
     return step - width * math.floor(step / width + 0.5)
@@ -151,6 +151,6 @@ def _nearest(step: float, width: float) -> float:
 
 @kernel
 def _within(x: float, y: float, limit: float) -> float:
-    """Factor by which a vector is no longer than a limit."""
+    """Return the factor that shortens a vector to a limit; 1 if it is not longer."""
     norm = math.hypot(x, y)
     return limit / norm if norm > limit else 1.0

@@ -71,7 +71,7 @@ def _table(record: RecordType[Any], count: int, **columns: NDArray[Any]) -> Rows
 
 
 def _places(count: int, columns: Array) -> Rows[PlaceRecord]:
-    """Make K records of places from their columns x, y, width, height, turn, perhaps pause."""
+    """Return K records of places from columns x, y, width, height, turn and, optionally, pause."""
     return _table(PLACE, count, **dict(zip(PLACE.names, columns.T, strict=False)))
 
 

@@ -77,7 +77,7 @@ def wrap(agents: People, i: int, box: Array, goals_wrap: bool) -> None:
 
 @kernel
 def _shift(at: float, low: float, high: float) -> float:
-    """Shift that brings a coordinate within its borders."""
+    """Return the shift that brings a coordinate within its borders, m."""
     if low <= at <= high:
         return 0.0
     return low - high if at > high else high - low

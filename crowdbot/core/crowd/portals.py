@@ -88,14 +88,14 @@ def leave(agents: People, i: int, when: float) -> None:
 
 @kernel
 def _share(at: float, low: float, high: float, margin: float) -> float:
-    """Place of a coordinate between the sides of a box shrunk by a margin, 0 to 1."""
+    """Return the place of a coordinate between the sides of a box shrunk by a margin, 0 to 1."""
     room = high - low - 2.0 * margin
     return min(1.0, max(0.0, (at - low - margin) / room)) if room > 0.0 else 0.5
 
 
 @kernel
 def _shares(box: Array, margin: float, x: float, y: float) -> tuple[float, float]:
-    """Place of a point between the sides of a box shrunk by a margin, each 0 to 1."""
+    """Return the place of a point between the sides of a box shrunk by a margin, each 0 to 1."""
     return _share(x, box[0], box[1], margin), _share(y, box[2], box[3], margin)
 
 

@@ -162,7 +162,7 @@ def next_goal(agents: People, i: int, people: AgentParameters, key: np.uint64, w
 
 @kernel
 def _all_here(agents: People, i: int, people: AgentParameters) -> bool:
-    """Return True if a lap would be over before it begins."""
+    """Return True if agent i is at all points of its route, so that a lap would end at once."""
     traits = people.traits[i]
     for row in range(int(traits.first), int(traits.end)):
         place = people.route[row]

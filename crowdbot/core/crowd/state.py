@@ -50,7 +50,7 @@ class PersonRecord:
         corner: of those who find their way with `crowdbot.core.crowd.routing`: 1 + the corner
             aimed at, 0 for none.
         waypoint_x, waypoint_y: the point walked to.
-        aside: how much of its room aside of the corner is used, 0 to 1.
+        aside: fraction of the free room beside the corner that the person uses, 0 to 1.
         slow_for: for how long there was no headway.
         detours: how often another way was looked for.
     """
@@ -176,7 +176,7 @@ def view(flat: Array) -> tuple[Array, Array]:
 
 
 def people_in(flat: Array) -> People:
-    """People (N,) of a flat vector by name, sharing its memory."""
+    """Return the people (N,) of a flat vector as records, sharing its memory."""
     return rows_in(flat[HEADER_SIZE : _contacts_start(flat)], PERSON)
 
 

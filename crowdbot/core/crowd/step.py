@@ -148,7 +148,7 @@ def _advance(
 
 @kernel
 def ticks_without_robots(count: int, flat: Array, *rest: Any) -> int:
-    """Several times `tick`; ends early after one in which a trip ends.
+    """Call `tick` several times; stop early after one in which a trip ends.
 
     Args:
         count: largest number of ticks.
@@ -212,7 +212,7 @@ def _move(agents: People, i: int, fastest: float, ax: float, ay: float, dt: floa
 
 @kernel
 def _look_ahead(agents: People, i: int, speed: float, dt: float) -> None:
-    """Count the distance walked, and turn to where agent i walks with some speed."""
+    """Update the distance that agent i has walked, and its facing direction unless it is slow."""
     agents[i].walked += speed * dt
     if speed > _TURNS_ABOVE:
         agents[i].dir_x, agents[i].dir_y = agents[i].vx / speed, agents[i].vy / speed

@@ -107,8 +107,8 @@ class CrowdWorld:
     def with_images(self, reach: float) -> CrowdWorld:
         """Return a world whose walls and pillars are followed by their images across the border.
 
-        So that no one wraps into what is solid on the other side. As the original engine has none,
-        there are none with ``parity``.
+        Thus people do not wrap into something solid on the other side. With ``parity`` there are no
+        images, as in the original engine.
 
         Args:
             reach: only images closer than this to the floor, m.

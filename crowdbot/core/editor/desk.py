@@ -60,7 +60,7 @@ class Desk:
             return {"text": made, **self._drawn(made)}
 
     def play(self, text: str) -> dict[str, Any]:
-        """Return ten seconds of a text.
+        """Return the first ten seconds of a scenario text, simulated.
 
         Raises:
             InputError: it is not valid, or its simulation failed.
@@ -76,7 +76,7 @@ class Desk:
         Args:
             text: the document.
             known: hash of the file when it was read.
-            anyway: True to write over what others wrote meanwhile.
+            anyway: True to overwrite changes that other programs made meanwhile.
 
         Raises:
             ConflictError: another program wrote the file meanwhile.

@@ -23,7 +23,7 @@ _RATE = 8.0
 
 
 def play(text: str, file: Path, robots: list[str]) -> dict[str, Any]:
-    """Return times and places of people and robots.
+    """Return the times (s) and the positions of people and robots, from simulating a document.
 
     Args:
         text: the document.
@@ -31,7 +31,7 @@ def play(text: str, file: Path, robots: list[str]) -> dict[str, Any]:
         robots: names of its robots.
 
     Raises:
-        InputError: the simulation failed; with its last lines.
+        InputError: the simulation failed; the message has the last lines of its output.
     """
     aside = file.with_name(f".{file.stem}.{os.getpid()}.play.yaml")
     with tempfile.TemporaryDirectory(prefix="crowdbot-edit-") as folder:

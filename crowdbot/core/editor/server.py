@@ -44,7 +44,7 @@ class Server:
 
     @property
     def url(self) -> str:
-        """Address of the page, with the token."""
+        """Return the address of the page, with the token."""
         return f"http://127.0.0.1:{self.port}/?token={self.token}"
 
     def run(self) -> None:

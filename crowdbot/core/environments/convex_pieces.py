@@ -19,7 +19,7 @@ _LEAST_AREA = 1e-9
 
 
 def convex_pieces(outline: Outline, holes: Sequence[Outline] = ()) -> list[Array]:
-    """Convex outlines (K, 2), counter-clockwise, that fill a polygon without overlap.
+    """Return convex outlines (K, 2), counter-clockwise, that fill a polygon without overlap.
 
     Args:
         outline: simple, counter-clockwise; m.
@@ -43,7 +43,7 @@ def _corners(triangle: Any) -> Outline:
 
 
 def _joined(pieces: list[Outline]) -> list[Outline]:
-    """Pieces joined across common sides, in turn, as long as what comes out is convex."""
+    """Return the pieces after joining neighbours, pair by pair, while the result is convex."""
     open_ = dict(enumerate(pieces))
     owners = {side: k for k, piece in open_.items() for side in sides(piece)}
     done: list[Outline] = []
@@ -59,7 +59,7 @@ def _joined(pieces: list[Outline]) -> list[Outline]:
 def _partner(
     piece: Outline, others: dict[int, Outline], owners: dict[Side, int]
 ) -> tuple[int, Outline] | None:
-    """Return the first other piece that can be joined, by its number, and both as one."""
+    """Return the index of the first other piece that can be joined, and the joined outline."""
     beside = {owners.get((b, a), -1) for a, b in sides(piece)}
     for k in sorted(beside & others.keys()):
         together = _join(piece, others[k])
@@ -69,7 +69,7 @@ def _partner(
 
 
 def _join(one: Outline, other: Outline) -> Outline | None:
-    """Both as one convex outline, if they have a whole side in common."""
+    """Return two pieces as one convex outline, if they share a whole side; otherwise None."""
     where = {point: k for k, point in enumerate(other)}
     for i, start in enumerate(one):
         end = one[(i + 1) % len(one)]

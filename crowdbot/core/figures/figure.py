@@ -99,7 +99,7 @@ def _figure(file: GltfFile) -> Figure:
 
 
 def _way(file: GltfFile, motion: GltfMotion, first: Array) -> Array:
-    """Return how far an animation walks away from its place (3,); poses stay above it."""
+    """Return the horizontal displacement (3,) of a figure over an animation, to be removed."""
     if not motion.duration > 0.0:
         return np.zeros(3)
     last = np.concatenate([part.points for part in _parts(file, *motion.at(motion.duration))])

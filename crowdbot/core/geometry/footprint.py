@@ -35,7 +35,7 @@ class Footprint:
         return float(np.max(np.hypot(*self.corners.T), initial=0.0)) + self.radius
 
     def outline(self, x: float, y: float, yaw: float, steps: int = 24) -> Array:
-        """Points (N, 2) around it at a pose, counter-clockwise; none of a disc.
+        """Return points (N, 2) of the outline at a pose, m, counter-clockwise; none for a disc.
 
         Args:
             steps: points on the circle that the rounding of a capsule is made of.
@@ -52,7 +52,7 @@ class Footprint:
         return placed
 
     def gap(self, x: Array, y: Array) -> Array:
-        """Distance of points from the outline, m; negative inside. NaN where unknown."""
+        """Return distances of points from the outline, m; negative inside, NaN for NaN."""
         nearest = np.full(np.shape(x), np.inf)
         inside = np.zeros(np.shape(x), dtype=bool)
         for (ax, ay), (bx, by) in self._edges():
@@ -63,9 +63,9 @@ class Footprint:
         return np.where(inside, -nearest, nearest) - self.radius
 
     def first_touch(self, x: Array, y: Array, dx: Array, dy: Array, reach: Array) -> Array:
-        """Least s >= 0 at which a disc of radius ``reach`` at (x + s dx, y + s dy) touches.
+        """Return the least s >= 0 at which a moving disc of radius ``reach`` touches; inf if never.
 
-        inf where it never does; meaningless where it touches at s = 0 already.
+        Its centre is (x + s dx, y + s dy). The result is undefined if it touches at s = 0 already.
         """
         limit = np.broadcast_to(reach + self.radius, x.shape)
         first = np.full(x.shape, np.inf)
@@ -111,7 +111,7 @@ def footprint_of_model(robot: RobotModel) -> Footprint:
 
 
 def _turns(corners: Array) -> Array:
-    """Angle of the turn after each edge, rad, positive to the left; edges without length: 0."""
+    """Return the turn after each edge, rad, positive to the left; 0 for edges without length."""
     edge = np.roll(corners, -1, axis=0) - corners
     edge = edge[np.any(edge != 0.0, axis=1)]
     following = np.roll(edge, -1, axis=0)
@@ -137,13 +137,13 @@ def body_side(bearing: float) -> str:
 
 
 def into_frame(theta: Array, x: Array, y: Array) -> tuple[Array, Array]:
-    """World vectors (N, M) in frames with headings ``theta`` (N,), rad."""
+    """Return world vectors (N, M) in frames with headings ``theta`` (N,), rad."""
     c, s = np.cos(theta)[:, None], np.sin(theta)[:, None]
     return c * x + s * y, c * y - s * x
 
 
 def _to_segment(x: Array, y: Array, ex: float, ey: float) -> Array:
-    """Distance of points from the segment (0, 0) to (ex, ey), m."""
+    """Return the distance of points from the segment (0, 0) to (ex, ey), m."""
     square = ex * ex + ey * ey
     along = np.clip((x * ex + y * ey) / square, 0.0, 1.0) if square > 0 else np.zeros(np.shape(x))
     distance: Array = np.hypot(x - along * ex, y - along * ey)

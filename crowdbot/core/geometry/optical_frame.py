@@ -14,5 +14,5 @@ OPTICAL_QUATERNION = (-0.5, 0.5, -0.5, 0.5)
 
 
 def optical(frame: str) -> str:
-    """Name of the optical frame of a camera."""
+    """Return the name of the optical frame of a camera."""
     return f"{frame}_optical"

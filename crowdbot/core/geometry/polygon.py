@@ -41,7 +41,7 @@ def entry_fraction(zone: Array, x0: float, y0: float, x1: float, y1: float) -> f
 
 @kernel
 def distance_to(zone: Array, x: float, y: float) -> float:
-    """Distance from a point to a polygon, zero inside, m."""
+    """Return the distance from a point to a polygon, m; zero inside."""
     if inside(zone, x, y):
         return 0.0
     best = math.inf

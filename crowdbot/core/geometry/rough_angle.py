@@ -9,7 +9,7 @@ from crowdbot.core.support.compiling.compile import kernel
 
 @kernel
 def rough_angle(x: float, y: float) -> float:
-    """Direction of a vector, which is not zero, within 2e-5 rad; much quicker than ``atan2``.
+    """Return the direction of a vector, not zero, within 2e-5 rad; much faster than ``atan2``.
 
     Abramowitz and Stegun, Handbook of Mathematical Functions (1964), 4.4.49.
     """

@@ -67,7 +67,7 @@ def segment_grid(segments: Array, reach: float) -> SegmentGrid:
 
 
 class _Same:
-    """Segments that are equal only to themselves; they are kept, so that their id stays theirs."""
+    """A cache key that compares an array by identity, and keeps it so that its id is not reused."""
 
     __slots__ = ("segments",)
 
@@ -82,7 +82,7 @@ class _Same:
 
 
 def grid_of(segments: Array, reach: float) -> SegmentGrid:
-    """Return `segment_grid` of an array that does not change; it is built once."""
+    """Return the cached `segment_grid` of an array that does not change."""
     return _grid_of(_Same(segments), reach)
 
 

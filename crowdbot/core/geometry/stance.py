@@ -42,9 +42,9 @@ class RelativePosition(NamedTuple):
 
     Attributes:
         gap: between the surfaces, m; negative inside.
-        around: direction to the robot off the person's front, positive to the person's left.
-        bearing: direction to the person off the robot's front.
-        turned: the robot's heading off the person's.
+        around: direction to the robot relative to the person's front, positive to the left.
+        bearing: direction to the person relative to the robot's front.
+        turned: the robot's heading relative to the person's.
     """
 
     gap: Array

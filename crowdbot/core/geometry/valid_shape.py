@@ -8,8 +8,8 @@ from typing import Any
 def valid_shape(shape: Any) -> Any:
     """Return a valid geometry of shapely in which holes stay holes, and parts are joined.
 
-    Holes may touch or leave their outline, and parts may overlap: by the lines alone, as GEOS
-    does it, such holes become part of the whole, and overlaps become holes.
+    Holes may touch or cross their outline, and parts may overlap. GEOS, which considers the lines
+    alone, would turn such holes into parts, and overlaps into holes.
     """
     import shapely  # type: ignore[import-untyped,unused-ignore]
 

@@ -1,4 +1,4 @@
-"""Parameters that are varied, and the trials of a grid, of chance, or of Optuna."""
+"""Parameters that are varied, and their trials: on a grid, at random, or by Optuna."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def parse_axes(texts: Sequence[str]) -> tuple[ParameterAxis, ...]:
 
 
 def trial_count(axes: Sequence[ParameterAxis], how: How, count: int, steps: int) -> int:
-    """Return the number of trials; a few less where chance repeats one."""
+    """Return the number of trials; random ones may be fewer, since duplicates are skipped."""
     return math.prod(len(axis.steps(steps)) for axis in axes) if how == "grid" else count
 
 
@@ -116,8 +116,8 @@ def run_trials(
     Args:
         axes: the varied parameters.
         how: the way in which trials are chosen.
-        count: number of trials by chance or by Optuna.
-        seed: of chance.
+        count: number of random trials, or of trials by Optuna.
+        seed: random seed.
         steps: values of a range in a grid.
         score: runs a trial and returns its score; None if it has none.
         better: ``higher`` or ``lower``.

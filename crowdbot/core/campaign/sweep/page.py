@@ -76,7 +76,7 @@ def verdict(sweep: Sweep) -> list[str]:
 
 
 def _fit(sweep: Sweep, best: TrialResult) -> Iterator[str]:
-    """Yield what is left of the best trial's lead on other people."""
+    """Yield how much of the best trial's lead over the defaults remains with other people."""
     usual = sweep.usual
     if best.elsewhere is None or best.elsewhere.value is None or best.score.value is None:
         yield "It was not tried on other people: some of its lead may be chance."

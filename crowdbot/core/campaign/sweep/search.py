@@ -38,7 +38,7 @@ class SweepRequest:
         planner: name or file.
         axes: what is varied.
         how, count, steps: as in `run_trials`.
-        seed: of the people of the search, and of chance; people of the check have the next one.
+        seed: of the people of the search, and of random trials; the check uses the next seed.
         metric, variant, better: the score.
         only: patterns of scenarios; ``sample``: number of scenarios, chosen by chance.
         check: number of best trials that are tried on other people.
@@ -129,7 +129,7 @@ def search(request: SweepRequest, registry: Registry, execute: Execute) -> Sweep
 
     Args:
         registry: the installed components.
-        execute: executes a plan; with a title.
+        execute: function that executes a plan, given a title to show.
 
     Raises:
         InputError: the folder holds another sweep.

@@ -141,7 +141,7 @@ def _place(
 
 @kernel
 def _push(dx: float, dy: float, reach: float) -> tuple[float, float]:
-    """Overlap of discs (m), away from the other; zero for centres on each other."""
+    """Return the overlap vector of two discs, m, away from the other; zero for equal centres."""
     d2 = dx * dx + dy * dy
     if d2 >= reach * reach or d2 == 0.0:
         return 0.0, 0.0

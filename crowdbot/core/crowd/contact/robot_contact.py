@@ -70,9 +70,9 @@ def robot_contacts(
     """Compute the contact forces of each robot that is present, see `robot_contact`.
 
     Args:
-        contacts: what each of all robots feels, changed in place: the last part of the crowd's
-            state.
-        numbers: (R,) which of them are there.
+        contacts: forces and contacts of every robot, changed in place: the last part of the
+            crowd's state.
+        numbers: (R,) indices of the robots that are present.
         stiffnesses: (R,) of the contact with each, N/m.
         reaction: (N, 2) the sum of their forces on each agent, N; written.
     """

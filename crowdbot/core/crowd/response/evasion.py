@@ -150,7 +150,7 @@ def _sidestep(
     and the clearance, lies beside the ray; it takes the shorter side, or gives way.
 
     Args:
-        forward: speed that the agent is about to gain, m/s: who waits expects to walk on.
+        forward: speed that the agent is about to gain, m/s: a waiting agent expects to walk on.
     """
     wx, wy = agents[i].vx - robot.vx, agents[i].vy - robot.vy
     if forward > 0.0:
@@ -186,7 +186,7 @@ def _sidestep(
 def _recedes(
     agents: People, i: int, robot: RobotRecord, outline: Array, wx: float, wy: float
 ) -> bool:
-    """Return True if all of a robot is behind agent i on its relative way: a test without roots.
+    """Return True if all of a robot is behind agent i on its relative way; takes no square root.
 
     Args:
         wx, wy: velocity relative to the robot, m/s.
@@ -225,8 +225,8 @@ def _give_way(
         extra: clearance for the robot's speed, m.
 
     Returns:
-        the way, positive if behind is on the left, negative if on the right; and what the
-        clearance behind it is larger by than in front: people wait for vehicles.
+        the extra way, positive if behind is on the left, negative if on the right; and by how much
+        the clearance behind the robot exceeds that in front, m: people wait for vehicles.
     """
     if response.yield_time == 0.0:
         return 0.0, 0.0
@@ -239,9 +239,10 @@ def _give_way(
 
 @kernel
 def _waits(agents: People, i: int, robot: RobotRecord, response: DecisionResponse) -> float:
-    """Return the share of a robot's extent that is no longer way to agent i, who waits for it.
+    """Return how far agent i waits for a fast crossing robot whatever its length, 0 to 1.
 
-    From 0 to 1: 0 for slow robots, and where both go the same or opposite way within 45 degrees.
+    This is the share of the robot's extent that does not count as a detour; 0 for slow robots, and
+    for paths within 45 degrees of parallel.
     """
     speed2 = robot.vx * robot.vx + robot.vy * robot.vy
     if speed2 <= response.waiting_speed * response.waiting_speed:
@@ -265,7 +266,7 @@ def _way_round(
     behind: float,
     waits: float,
 ) -> tuple[float, float, float, float, bool]:
-    """Place of an outline beside the ray of agent i.
+    """Return where a robot's outline lies beside the ray of agent i, and the shift to pass it.
 
     Args:
         ux, uy: direction of the ray.
@@ -309,7 +310,7 @@ def _braking(
     outline: Array,
     response: DecisionResponse,
 ) -> tuple[float, float]:
-    """Braking of agent i in front of a robot that it walks towards, m/s^2; never a step back."""
+    """Return the braking of agent i in front of a robot on its way, m/s^2; never a step back."""
     dx, dy = robot.x - agents[i].x, robot.y - agents[i].y
     depth, nx, ny, _, _ = overlap(robot.yaw, outline, dx, dy, robot.body + radius)
     own = agents[i].vx * nx + agents[i].vy * ny

@@ -97,8 +97,8 @@ class Human:
         waiting_speed: people wait for a faster robot that crosses their way, however long it is,
             m/s.
         speeding_up: largest acceleration in one's own direction by which people evade, m/s^2.
-        intent: time over which people's desired acceleration counts in their prediction, s: who
-            waits expects to walk on.
+        intent: time over which people's desired acceleration counts in their prediction, s:
+            people who wait expect to walk on.
     """
 
     sight: float = 6.0

@@ -1,7 +1,7 @@
 """Stopping in front of a standing robot, even if it was not noticed.
 
-A person who would have to brake harder than people choose to is braked just as hard as needed. A
-person whom others push against the robot leans back, the more the nearer.
+If stopping needs more than a person's usual braking, exactly the needed braking is applied. A
+person whom others push against the robot leans back, the more the nearer it is.
 """
 
 from __future__ import annotations

@@ -30,7 +30,7 @@ class Router:
     Args:
         agents: all, present or to come.
         walls, pillars: (S, 4), (P, 3) what people walk around, m.
-        routing: how they choose.
+        routing: parameters of their choice of paths.
     """
 
     def __init__(self, agents: Agents, walls: Array, pillars: Array, routing: WayFinding) -> None:
@@ -54,7 +54,7 @@ class Router:
         Args:
             people: of the crowd's state.
             dt: since the last decision, s.
-            decision: its number; below 0 all look around, else one after the other.
+            decision: its number; below 0: all people look for paths, otherwise they take turns.
         """
         for one in self._classes:
             one.find(people, self._agents, self._habits, dt, decision)
@@ -132,7 +132,7 @@ class _BodyClass:
         return row
 
     def _drop(self) -> None:
-        """Give up trees that lead to no one's goal, if they are many."""
+        """Discard path trees to goals that no one has any more, if there are many."""
         used = {(x, y) for x, y in self._goal.tolist()}
         if len(self._rows) > len(used) + _SPARE_TREES:
             self._free = [row for goal, row in self._rows.items() if goal not in used]

@@ -21,8 +21,8 @@ def plan_tree(
     """Run Dijkstra's algorithm from the goal outwards.
 
     Args:
-        sight: edges at the margin of a body; where the goal is not seen so, it is looked for
-            past ``wider`` ones, nearer to the walls.
+        sight, wider: edges at a body's margin, and nearer to the walls; the latter are used if no
+            corner sees the goal past the former.
         left: (V,) length of the way to the goal, m, inf without one; written.
         after: (V,) the corner after each, `TO_GOAL` before the goal; written.
         heap, at: (V,) scratch.

@@ -154,7 +154,7 @@ def _look(
 
 @kernel
 def _keeps_on(agents: People, i: int, blocked: bool, wider: Sight) -> bool:
-    """Return True if agent i goes on to what it aims at in place of a corner; if not, forget it."""
+    """Return True if agent i keeps a waypoint that is not a corner; otherwise clear it."""
     if agents[i].corner >= 0.0:
         return False
     if not blocked:
@@ -168,7 +168,7 @@ def _keeps_on(agents: People, i: int, blocked: bool, wider: Sight) -> bool:
 
 @kernel
 def _step_aside(agents: People, i: int, number: int, sight: Sight, habits: Habits) -> None:
-    """Agent i, who faces a person that it cannot pass, walks a little to one side first."""
+    """Let agent i, which cannot pass the person ahead, first walk a little to one side."""
     dx, dy = agents[i].waypoint_x - agents[i].x, agents[i].waypoint_y - agents[i].y
     away = math.hypot(dx, dy)
     if away == 0.0:
@@ -219,7 +219,7 @@ def _shows_goal(agents: People, i: int, v: int, table: Array, sight: Sight) -> b
 
 @kernel
 def _no_headway(agents: People, i: int, preferred: float, patience: float, dt: float) -> bool:
-    """Return True if agent i, on its way, has been slow for longer than it likes; keep count."""
+    """Return True if agent i, on its way, was slow for longer than ``patience``, s; keep count."""
     far = math.hypot(agents[i].goal_x - agents[i].x, agents[i].goal_y - agents[i].y)
     slow = math.hypot(agents[i].vx, agents[i].vy) < _SLOW * preferred
     if agents[i].waiting != PRESENT or not slow or far < _NEAR_GOAL:
@@ -306,7 +306,7 @@ def _choose(
     agents: People, i: int, left: Array, after: Indices, table: Array, sight: Sight,
     avoided: int, habits: Habits,
 ) -> None:  # fmt: skip
-    """The corner in sight from which the whole way is shortest; 0 where there is none.
+    """Aim agent i at the corner in sight that gives the shortest path; 0 if there is none.
 
     Args:
         avoided: a corner whose opening is avoided, unless all other paths are too long; -1 for

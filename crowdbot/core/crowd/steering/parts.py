@@ -83,7 +83,7 @@ class SteeringParts:
         return changed
 
     def _meet(self, agents: Agents) -> None:
-        """Keep the traits of agents."""
+        """Store the traits of agents for `steer`."""
         self._agents = agents
         self._traits = np.array(
             [agents.avoided_radius, agents.preferred_speed, agents.max_acceleration]

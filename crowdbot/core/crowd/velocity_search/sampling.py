@@ -129,7 +129,7 @@ class Sampler:
         )  # fmt: skip
 
     def candidates(self, view: CrowdView) -> Array:
-        """The regular candidates (N, S, 2) of all agents, or new random ones, world frame, m/s."""
+        """Return regular, or new random, candidates (N, S, 2) of all agents, world frame, m/s."""
         found = np.zeros((len(view.position), *self._candidates.shape))
         _candidates_of(
             *self.costs.surroundings(view), *self._options, self._candidates, self._polar,

@@ -116,9 +116,9 @@ def search(
 
 @kernel
 def _whole_steps(count: int, most: int) -> int:
-    """Return the number of candidates, rounded up to a whole vector.
+    """Return the number of candidates, rounded up to whole SIMD vectors.
 
-    The last ones are arbitrary.
+    The added ones have arbitrary values.
     """
     return min((count + _STEP - 1) // _STEP * _STEP, most)
 

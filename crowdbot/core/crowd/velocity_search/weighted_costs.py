@@ -167,7 +167,7 @@ class WeightedCosts:
         self._make_room(1, 0)
 
     def reach(self, view: CrowdView) -> float:
-        """Centre distance beyond which no one matters to another, m."""
+        """Return the centre distance beyond which no disc matters to a person, m."""
         largest = self.largest
         for discs in (view.robot, view.pillars):
             if len(discs):
@@ -178,7 +178,7 @@ class WeightedCosts:
         return self._reach
 
     def reach_of(self, largest: float) -> float:
-        """Centre distance beyond which no disc up to a radius matters to a person, m."""
+        """Return the centre distance beyond which discs up to a radius never matter, m."""
         return max((c.reach(self.largest, largest) for c in self._all), default=0.0)
 
     def wall_grid(self, walls: Array, largest: float) -> SegmentGrid:
@@ -225,18 +225,18 @@ class WeightedCosts:
         return grid_of(walls, covered)
 
     def _usual_speed(self, *, own: bool) -> float:
-        """Return the speed at which most decisions look for walls at most, m/s."""
+        """Return a speed that most decisions do not exceed in their search for walls, m/s."""
         walked = _HURRIED * self._preferred_speed()
         fastest = _PUSHED * float(np.max(self.agents.max_speed, initial=0.0))
         fastest_asked = min(fastest, walked + self.around) if self.around > 0.0 else fastest
         return math.hypot(fastest_asked, walked) if own else fastest_asked
 
     def _preferred_speed(self) -> float:
-        """Return the largest one, m/s."""
+        """Return the largest preferred speed of the agents, m/s."""
         return float(np.max(self.agents.preferred_speed, initial=0.0))
 
     def _walls_matter(self, largest: float) -> tuple[float, float]:
-        """Return the centre distance (m) of walls that may change a result: a part, and seconds."""
+        """Return the distance within which walls matter: metres, and seconds at full speed."""
         each = [
             (c.reach(self.largest, largest), 0.0)
             if c.wall_reach is None
