@@ -71,13 +71,13 @@ def on_thresholds() -> Mapping[str, World]:
 
 
 def standing() -> Trajectories:
-    """Return a run with a standing robot and a standing person, apart."""
+    """Return a run with a standing robot and a standing person who do not touch."""
     t = np.arange(33) / 16.0
     return _meeting(t, np.zeros(33), np.full(33, 2.0), np.full(33, 1.0))
 
 
 def first(run: Trajectories, count: int) -> Trajectories:
-    """Return the first samples of a run."""
+    """Return a run cut to its first ``count`` samples."""
     robot, agents = run.robot, run.agents
     if robot is not None:
         rows: dict[str, Any] = {n: getattr(robot, n)[:count] for n in ("x", "y", "theta", "v", "w")}

@@ -55,7 +55,7 @@ def run_plan(plan: Plan, size: int, cluster: str | None) -> State:
 
 
 def print_plan(plan: Plan, size: int, *, as_json: bool) -> None:
-    """Print the missing runs on stdout."""
+    """Print a plan's numbers of complete and missing runs, and estimates of time and disk space."""
     import shutil
 
     complete = sum(bool(r.status) for r in plan.runs)

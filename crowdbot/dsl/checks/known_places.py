@@ -18,7 +18,7 @@ _MOST = 64
 
 
 class _Same:
-    """An environment that is equal only to itself."""
+    """A cache key for an environment, compared by identity."""
 
     __slots__ = ("environment",)
 

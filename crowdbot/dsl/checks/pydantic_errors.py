@@ -336,7 +336,7 @@ def _has_kind(model: Any, tag: object) -> bool:
 
 
 def _kinds(model: Any) -> tuple[str, ...]:
-    """Return the kinds that distinguish a model's types; empty if there are none."""
+    """Return the values that a model allows for ``kind``; empty if they are not fixed."""
     field = model.model_fields.get("kind")
     named = field is not None and get_origin(field.annotation) is Literal
     return get_args(field.annotation) if field is not None and named else ()

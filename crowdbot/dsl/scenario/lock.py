@@ -116,7 +116,7 @@ class LockFiles:
         """Return the lock.
 
         Raises:
-            InputError: there is none, it is not a lock, or its format is another.
+            InputError: there is none, it is not a lock, or it has another format version.
         """
         return parse_lock(_read(self.lock_path), self.lock_path.name, self.spec)
 
@@ -187,7 +187,7 @@ def parse_lock(text: str, name: str, spec: str) -> Lock:
     """Return a lock from its text.
 
     Raises:
-        InputError: it is not a lock, or a release with another format wrote it.
+        InputError: it is not a lock, or it has the format of another release.
     """
     again = f"restore it, or delete it and run 'crowdbot lock {spec}'"
     try:

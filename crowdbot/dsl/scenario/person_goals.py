@@ -145,7 +145,7 @@ class AccompanyGoal(PersonGoal):
 
 
 class LeadGoal(PersonGoal):
-    """Go ahead of a person into a zone; the person follows the robot, and has to be near then.
+    """Go ahead of a person into a zone; the person follows, and must be near the robot there.
 
     The person has no goal but the robot: walks towards it, stops `keeps` away, and stands while it
     is farther than `loses`. The limits are those of all people.

@@ -55,7 +55,7 @@ class Parts:
         return self._model({**raw, "properties": fields})
 
     def union(self) -> Json:
-        """Return a document that is one of the roots, distinguished by ``kind``."""
+        """Return the schema of a document that is one of the roots, chosen by ``kind``."""
         return self.one_of(self._roots)
 
     def outer(self, model: type[BaseModel]) -> Json:
@@ -82,7 +82,7 @@ class Parts:
         return dict(sorted(found.items()))
 
     def one_of(self, names: Sequence[str]) -> Json:
-        """Return a component of one of several kinds, distinguished by ``kind``."""
+        """Return the schema of a component of several possible kinds, chosen by ``kind``."""
         kinds = {self._kind(n): n for n in names}
         words = [
             {"const": k, "description": self._raw[n].get("description", "")}
@@ -167,7 +167,7 @@ class Parts:
         return {"anyOf": [*short.get("anyOf", [short]), whole]}
 
     def _map(self, raw: Json, name: str) -> Json:
-        """Return the schema of named members; a dotted key leads into one of them."""
+        """Return the schema of a map of named members; dotted keys lead into a member."""
         member = self._place(raw["additionalProperties"], name)
         made = {k: v for k, v in raw.items() if k != "additionalProperties"}
         if not self._layered:
@@ -227,7 +227,7 @@ def described(schema: Json) -> Json:
 
 
 def _or_null(schema: Json) -> Json:
-    """Return a value or ``null``, which restores the default."""
+    """Return a schema that also allows ``null``, which restores the default."""
     if "$ref" in schema:
         rest = {k: v for k, v in schema.items() if k != "$ref"}
         return {**rest, "anyOf": [{"$ref": schema["$ref"]}, _NULL]}

@@ -39,7 +39,7 @@ class _SharedError:
 
 @dataclass(frozen=True, slots=True)
 class _Combination:
-    """A combination of the matrix: its id, crowd seed key, labels of the axes, and document."""
+    """A combination of the matrix: id, key of the crowd seed, labels per axis, and document."""
 
     name: str
     key: str

@@ -197,7 +197,7 @@ def _right_version(root: Node, problems: list[Diagnostic]) -> bool:
 
 
 def _check_size(root: Node, body: Node, axes: tuple[Axis, ...], problems: list[Diagnostic]) -> None:
-    """Limit the work that a small file can cause."""
+    """Refuse too many references or combinations, which even a small file can demand."""
     references = root.child("references")
     if references is not None and len(references.entries) > MAX_REFERENCES:
         text = f"the suite has {len(references.entries)} references; at most {MAX_REFERENCES}"

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class ExportFormat(StrEnum):
-    """Formats of other tools."""
+    """Output formats of ``crowdbot export``."""
 
     rosbag1 = "rosbag1"
     rosbag2 = "rosbag2"

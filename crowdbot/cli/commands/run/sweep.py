@@ -1,4 +1,4 @@
-"""``crowdbot sweep``: try parameters of a planner on people that no edition uses."""
+"""``crowdbot sweep``: try parameters of a planner on crowds that no challenge edition uses."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def sweep(
     no_plugins: NoPlugins = False,
     as_json: AsJson = False,
 ) -> None:
-    """Try parameters of a planner, on people that no edition uses; check the best on others.
+    """Try parameters of a planner on crowds that no edition uses; check the best on other crowds.
 
     Example: crowdbot sweep challenge-2020 --planner dwa --vary margin=0.02..0.2 --vary speed=0.7,1
     """

@@ -72,7 +72,7 @@ def documents() -> Path:
     """Return the folder of the pages: inside an installed package, else beside it.
 
     Raises:
-        InputError: there is neither.
+        InputError: neither folder exists.
     """
     package = Path(__file__).parents[3]
     for folder in (package / "docs", package.parent / "docs"):
