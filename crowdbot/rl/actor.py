@@ -129,8 +129,8 @@ class Actor:
 
         Args:
             rows: (W, R, 8) of all robots.
-            fresh, stepped: (W,) as of `RobotInputs`.
-            people: (W, M, 5) as of `RobotInputs`.
+            fresh, stepped: (W,) as in `RobotInputs`.
+            people: (W, M, 5) as in `RobotInputs`.
         """
         pose, twist = np.empty((2, self._worlds, 3))
         c.write_motion(rows, self._robot, pose, twist)

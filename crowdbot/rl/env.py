@@ -21,7 +21,7 @@ class NavEnv(Env):
     the robot's limits. An episode ends when the robot arrives; it is truncated at the time limit.
 
     Args:
-        arguments: as of `crowdbot.rl.env_setup.resolve`.
+        arguments: as in `crowdbot.rl.env_setup.resolve`.
 
     Raises:
         CrowdbotError: an argument is wrong, or a component cannot be simulated in a batch.

@@ -107,7 +107,7 @@ def resolve(
             ``options={"level": n}`` of a reset chooses one. In place of ``scenario``.
         set: changes to every scenario, as for `crowdbot.load`.
         observation, reward: kind, map with ``kind`` and fields, or spec.
-        draws, edition: as of `EnvSetup`.
+        draws, edition: as in `EnvSetup`.
         contact: ``end`` ends an episode at the first contact with a person.
         start_spread: largest distances of an episode's start from the scenario's: ``x``, ``y``, m,
             and ``yaw``, rad; the start is clear of walls and people.

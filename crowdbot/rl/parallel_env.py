@@ -24,7 +24,7 @@ class ParallelNavEnv(ParallelEnv):
     over.
 
     Args:
-        arguments: as of `crowdbot.rl.env_setup.resolve`.
+        arguments: as in `crowdbot.rl.env_setup.resolve`.
 
     Raises:
         CrowdbotError: an argument is wrong, or a component cannot be simulated in a batch.
@@ -63,7 +63,7 @@ class ParallelNavEnv(ParallelEnv):
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Values, Values]:
-        """Begin an episode of all robots; arguments as of `crowdbot.rl.env.NavEnv.reset`."""
+        """Begin an episode of all robots; arguments as in `crowdbot.rl.env.NavEnv.reset`."""
         level = (options or {}).get("level")
         self.rollout.begin(np.ones(1, np.bool_), [seed], level)
         self.agents = list(self.possible_agents)

@@ -23,7 +23,7 @@ class StableVecEnv(VecEnv):
     """W worlds for the algorithms of Stable-Baselines3.
 
     Args:
-        num_envs, arguments: as of `NavVectorEnv`; its ``autoreset_mode`` is ``SameStep``.
+        num_envs, arguments: as in `NavVectorEnv`; its ``autoreset_mode`` is ``SameStep``.
     """
 
     def __init__(self, num_envs: int, **arguments: Any) -> None:

@@ -32,7 +32,7 @@ class NavVectorEnv(VectorEnv):
         max_episode_steps: ends an episode before its time is over; None: the task's time limit.
         render_mode: ``rgb_array``: `render` returns a picture of each world; ``human``: a window
             shows the first world at each step.
-        arguments: as of `crowdbot.rl.env_setup.resolve`.
+        arguments: as in `crowdbot.rl.env_setup.resolve`.
 
     Raises:
         CrowdbotError: an argument is wrong, or a component cannot be simulated in a batch.

@@ -65,7 +65,7 @@ class PersonSight:
         pose, twist, vy: by odometry, as in `Observation`.
         readings: of all lidars.
         relative: (M, 5) x, y, facing, vx, vy of the people in the robot's base frame, NaN where
-            they are not there: what a device measures, before its errors.
+            absent: what a device measures, before its errors.
     """
 
     t: float

@@ -63,7 +63,7 @@ class Batch:
 
     Attributes:
         worlds: as they are now.
-        drives, least, most: as of `Drives`.
+        drives, least, most: as in `Drives`.
         seen: (W, M, 5) people after each step, as `people` writes them; with M = 0, none are kept.
     """
 

@@ -106,7 +106,7 @@ def walk(
     """Write positions, velocities and accelerations of people at each decision.
 
     Args:
-        crowd, groups: as of `crowdbot.core.batch.decide.decide`.
+        crowd, groups: as in `crowdbot.core.batch.decide.decide`.
         of_groups: relaxation times (G,), s, and members (G, N).
         parts: from `part_numbers`; time gap, personal space and lanes are used.
         traits: (3, N) avoided radius, preferred speed, largest acceleration.
@@ -114,7 +114,7 @@ def walk(
         scratch: order of discs, who decides, headings, desired accelerations, a row of zeros.
         blank: a state without people.
         robot: (1, 8), changed in place; its rows at each decision are ``robots`` (K, 4).
-        position to present: as of `CompiledWalk.walk`; left as they are.
+        position to present: as in `CompiledWalk.walk`; left as they are.
         times: time between decisions; time at which all of them are evaluated, s.
         found: (3, K, N, 2).
     """

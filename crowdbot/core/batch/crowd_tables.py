@@ -131,7 +131,7 @@ def group_tables(engine: CrowdEngine, robots: Array, pool: ScratchPool) -> list[
     """Return the arrays of each group of a crowd that decides in compiled code alone.
 
     Args:
-        robots: (R, 8) as of `crowd_table`.
+        robots: (R, 8) as in `crowd_table`.
     """
     return [_group_table(engine, group, robots, pool) for group in engine.groups]
 

@@ -100,7 +100,7 @@ class ImaginedCrowd:
         Accelerations are those of `accelerations`, and are kept until the next decision.
 
         Args:
-            position, velocity, goal, present: at first, as of `accelerations`.
+            position, velocity, goal, present: at first, as in `accelerations`.
             robots: (K, 4) x, y, vx, vy of a robot at each decision.
             radius: of the robot, m; None: people do not see it.
             dt: between two decisions, s.

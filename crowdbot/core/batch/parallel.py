@@ -39,7 +39,7 @@ class Batches:
     """Batches of worlds, one for each thread; a single one runs in the calling thread.
 
     Args:
-        worlds, keys: as of `Batch`.
+        worlds, keys: as in `Batch`.
         parts: which worlds each thread steps, see `parts_of`; those of a part may share scratch.
     """
 

@@ -17,7 +17,7 @@ from crowdbot.core.types.robot import RobotModel
 ROBOT_FIELDS = ("limits", "walls", "pillars", "corners", "zone")
 LIMITS, WALLS, PILLARS, CORNERS, ZONE = range(len(ROBOT_FIELDS))
 
-_SKIN = 1e-6  # m; distance kept by corners, as of `KinematicBase`
+_SKIN = 1e-6  # m; distance kept by corners, as in `KinematicBase`
 
 
 class DriveLimitsRecord:
@@ -57,7 +57,7 @@ class DriveStateRecord:
         work: work that people need against it to keep room, J.
         forced: its work, per mass, against people who evade it at the last moment, since the step
             began, J/kg.
-        aside: people whom it has driven aside since the step began, each as of
+        aside: people whom it has driven aside since the step began, each as in
             `encounters.driven_aside`.
     """
 

@@ -24,7 +24,7 @@ from crowdbot.core.support.records import Rows, as_record
 from crowdbot.core.support.ticks import TICKS_PER_SECOND
 from crowdbot.core.types.arrays import Array, Indices
 
-_SLACK = 1e-9  # as of `crowdbot.core.support.ticks`
+_SLACK = 1e-9  # as in `crowdbot.core.support.ticks`
 
 
 @kernel

@@ -156,7 +156,7 @@ def _record(seen: SeenSensor, model: RobotModel) -> Any:
 
 
 def _noise(spec: Any) -> Any:
-    """Table (K, 4) of a sensor's noise: its kind, and the fields of its spec."""
+    """Return the table (K, 4) of a sensor's noise models: kind, and the fields of its spec."""
     rows = []
     for noise in spec.noise.values():
         values = [float(getattr(noise, field)) for field in NOISE_KINDS[noise.kind]]

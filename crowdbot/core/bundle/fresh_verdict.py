@@ -22,7 +22,7 @@ class FreshScore:
     Attributes:
         claimed, fresh: means over the pairs.
         pairs: number of scenarios with both values.
-        p: probability of so much worse a mean if both come from the same planner; 1: too few.
+        p: probability of a mean this much worse if both are of one planner; 1 for too few pairs.
     """
 
     score: MainScore

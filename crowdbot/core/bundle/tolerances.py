@@ -15,12 +15,13 @@ these scores but one. Scores without a spread are not compared.
 
 The six main scores were measured again in 14 such scenarios: contacts_per_km 18, push_work 0.60,
 intrusion 0.017, safe_efficiency 0.041, success 0 and success_no_collision 0.76. All of them but
-push_work have another spread, which is chosen for what these runs cannot show:
+push_work have a chosen spread, for two reasons that these runs cannot measure:
 
-- how often an outcome turns: three of 14 may do so unseen, with 95 %, which makes 0.9. With 0.5 no
-  single run of yes or no, or of safe_efficiency, can be off by 10, so only the mean decides;
-- planners that touch more people than dwa, which has 0.1 contacts a run, while the difference of
-  two numbers grows by their root. 42 are two contacts on 48 m; 0.35 is 20 times dwa's intrusion.
+- Rare changes of outcome. With none in 14 runs, the rate may still be 3 in 14 (95 % bound), which
+  would give a spread of 0.9. The chosen 0.5 already makes `SINGLE` spreads exceed any difference of
+  success or safe_efficiency, so that only the mean decides.
+- Planners that touch more people than dwa with its 0.1 contacts per run: the difference of two
+  counts grows with their root. 42 is two contacts on 48 m; 0.35 is 20 times dwa's intrusion.
 """
 
 from __future__ import annotations

@@ -55,7 +55,7 @@ class CostEstimate:
         return job.cost * (took / cost if cost else 1.0)
 
     def size(self, kind: Kind, people: int, limit: float) -> float:
-        """Return the expected size of its files, bytes."""
+        """Return the expected size of a job's files, bytes."""
         found, expected = self._size
         factor = found / expected if expected and kind == "run" else 1.0
         return expected_bytes(kind, people, limit) * factor
@@ -68,7 +68,7 @@ def expected_seconds(kind: Kind, people: int, limit: float) -> float:
 
 
 def expected_bytes(kind: Kind, people: int, limit: float) -> float:
-    """Return the expected size of a recording without data."""
+    """Return the expected size of a recording without data, bytes."""
     base, each = _BYTES[kind]
     return (base + each * people) * _simulated(kind, limit)
 

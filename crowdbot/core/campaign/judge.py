@@ -66,7 +66,7 @@ class Judgement:
     """The outcome of `judge`.
 
     Attributes:
-        received, judged: new ones of this time, by name of the file.
+        received, judged: submissions received and judged in this call, by file name.
         left_out: name of the file -> reason.
         waits: True if the draws are hidden, so that nothing was run.
     """
@@ -118,7 +118,7 @@ def _received(
 ) -> Iterator[tuple[str, Sealed]]:
     """Yield the submissions that were received in time, after logging new ones.
 
-    ``closed``: why no new one is taken now; empty if it is.
+    ``closed``: why no new submission is accepted now; empty if they are accepted.
     """
     files = sorted(setup.submissions.glob(f"*{SUFFIX}"))
     if not files:
@@ -191,7 +191,7 @@ def _judge_one(
 
 
 class _LeftOutError(Exception):
-    """A submission is not judged, now or ever; ``event`` is what the log says."""
+    """A submission is not judged, now or ever; ``event`` is its entry in the log."""
 
     def __init__(self, event: str, reason: str) -> None:
         super().__init__(reason if event == _REFUSED else f"{reason}; the same command goes on")

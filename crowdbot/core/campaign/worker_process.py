@@ -84,7 +84,7 @@ class WorkerProcess:
         self._send()
 
     def poll(self) -> JobOutcome | None:
-        """Read messages; return the end of the job, if there is one.
+        """Read messages; return the outcome of the job once it has ended, otherwise None.
 
         A dead process is replaced and repeats the job, with at most `TRIES` attempts.
         """

@@ -89,9 +89,9 @@ class RulesRecord:
         keep_offset: 1 if people come out of the in-portal opposite to where they went in.
         goal_ahead: 1 if their goal in the out-portal is opposite to where their trip starts.
         goals_wrap: 1 if goals wrap with their agents.
-        dissipation: as of `CrowdWorld`.
+        dissipation: as in `CrowdWorld`.
         pillars: how many there are.
-        body_dissipation: as of `CrowdWorld`.
+        body_dissipation: as in `CrowdWorld`.
     """
 
     keep_offset: float

@@ -29,8 +29,8 @@ class CrowdWorld:
         pillars: (P, 3) x, y and radius of round obstacles, m.
         solids: convex, counter-clockwise outlines (K, 2), m, where no person comes in; their sides
             are walls, too.
-        periodic_boundary: (x0, x1, y0, y1) of a floor whose opposite borders are one, m; infinite
-            where it has no border.
+        periodic_boundary: (x0, x1, y0, y1) of a floor whose opposite borders are joined, m;
+            infinite where it has no border.
         entrance, out: (F, 4) boxes x0, x1, y0, y1 of each flow's portals, m.
         exit_point: where people leave the in-portal: at a random point, or with ``offset`` opposite
             to where they entered the out-portal.

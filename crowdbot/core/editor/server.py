@@ -23,7 +23,7 @@ TOKEN = "X-Crowdbot-Token"  # noqa: S105 - its name
 
 
 class Server:
-    """Serve one desk on a loopback address until `close`.
+    """HTTP server of one desk on a loopback address.
 
     Args:
         desk: the file that is edited.

@@ -26,7 +26,7 @@ class _Track:
 
 @dataclass
 class GltfMotion:
-    """The walking animation of a file: the one named like a walk, else the first.
+    """The walking animation of a file: the first with "walk" in its name, else the first.
 
     Some programs write one animation for each node. So without a walk by name, other animations are
     combined with the first, as far as they move other nodes.

@@ -108,7 +108,7 @@ def wanted_direction(task: PersonTask, around: Array) -> Array:
 
 
 def in_place(task: PersonTask, position: RelativePosition) -> Array:
-    """Return True where a robot is at its place; without a known front, any direction will do."""
+    """Return True where a robot is at its place; without a known front, any direction counts."""
     near = np.abs(position.gap - task.distance) <= task.tolerance
     aside = np.abs(wrapped(position.around - wanted_direction(task, position.around)))
     fits = np.isnan(aside) | (aside <= task.angle)

@@ -64,7 +64,7 @@ def push_apart(
         pillars: number of pillars.
         dissipation: how much stiffer contact is while it closes, s/m; 0: an elastic spring.
         placed: (N,) scratch.
-        room: (N,) output: as of `crowdbot.core.crowd.parameters.Scratch`.
+        room: (N,) output: as in `crowdbot.core.crowd.parameters.Scratch`.
     """
     _sort_along_x(agents, order)
     count, largest = _place(agents, traits, order, placed)

@@ -78,7 +78,7 @@ class FreeSpace:
         return FreeSpace(self.taken, tuple(self.parts[n] for n in numbers))
 
     def holds(self, points: Array) -> NDArray[np.bool_]:
-        """True for each of (M, 2) points that is in one of the parts or on its border."""
+        """Return (M,) True for each of (M, 2) points in one of the parts or on its border."""
         whole = shapely.union_all([shapely.buffer(part, _BESIDE) for part in self.parts])
         shapely.prepare(whole)
         inside: NDArray[np.bool_] = shapely.intersects_xy(whole, points[:, 0], points[:, 1])

@@ -62,7 +62,7 @@ class RouteMap:
 
     @property
     def count(self) -> int:
-        """Number of corners."""
+        """Return the number of corners."""
         return len(self.corners.table)
 
     def plan(self, x: float, y: float, left: Array, after: Indices) -> None:

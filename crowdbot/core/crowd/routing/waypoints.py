@@ -71,7 +71,7 @@ def find_waypoints(
     """Set the waypoints of people who are in the world or will be.
 
     Args:
-        decision: number of the decision; below 0 all look around.
+        decision: number of the decision; below 0: all people look for paths.
         dt: since the last decision, s.
         members: (K,) rows of those whose bodies these corners fit.
         ids, preferred: (N,) numbers and preferred speeds (m/s) of all.
@@ -105,7 +105,7 @@ def find_waypoints(
 
 @kernel
 def _looks(agents: People, i: int, table: Array) -> bool:
-    """Return True if agent i looks around early: it has no waypoint, or is near a corner."""
+    """Return True if agent i looks for a path early: it has no waypoint, or is near a corner."""
     v = int(agents[i].corner) - 1
     if v < 0:
         return bool(

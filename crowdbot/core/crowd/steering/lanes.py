@@ -22,7 +22,7 @@ def keep_all(
     """Add the accelerations of all people who decide and step aside, in place.
 
     Args:
-        discs to decides: as of `sorted_discs.sort_people`.
+        discs to decides: as in `sorted_discs.sort_people`.
         strength to follow: see `LanesSpec`.
         desired: (N, 2) accelerations, m/s^2.
     """

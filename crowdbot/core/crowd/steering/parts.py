@@ -114,9 +114,9 @@ def steer_people(
     """Change accelerations (N, 2) by all parts, then limit them, in place, m/s^2.
 
     Args:
-        parts: from `part_numbers`; key: as of `Steering`; ids: (N,) of people.
-        traits to diagonal, unsorted to decides: as of `sort_people`.
-        walls to cells: as of `push_off_walls`.
+        parts: from `part_numbers`; key: as in `Steering`; ids: (N,) of people.
+        traits to diagonal, unsorted to decides: as in `sort_people`.
+        walls to cells: as in `push_off_walls`.
         t: s.
         relaxation: s, at least the time between decisions.
     """
@@ -152,7 +152,7 @@ def steer_among_discs(
     Args:
         parts: from `part_numbers`.
         near, row, heading, decides: sorted discs and what `sort_people` writes.
-        velocity, relaxation, desired: as of `steer_people`.
+        velocity, relaxation, desired: as in `steer_people`.
     """
     gap, space, lanes = parts[GAP], parts[SPACE], parts[LANES]
     if gap[0] != 0.0:

@@ -27,7 +27,7 @@ def push_all(
     pushes are added in the order of the discs.
 
     Args:
-        discs, heading, decides: as of `sorted_discs.sort_people`.
+        discs, heading, decides: as in `sorted_discs.sort_people`.
         strength to behind: see `PersonalSpaceSpec`.
         desired: m/s^2.
     """

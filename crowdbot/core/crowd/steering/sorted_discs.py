@@ -30,7 +30,7 @@ def sort_people(
         position, velocity, goal: (N, 2), m and m/s.
         traits: (3, N) avoided radius (m), preferred speed (m/s), and largest acceleration.
         present, members: (N,) who is there, and who has this steering.
-        robots to diagonal: as of `neighbour_discs.write_discs`.
+        robots to diagonal: as in `neighbour_discs.write_discs`.
         unsorted: scratch, of the size of ``discs``.
         discs: (>= D,) output: people, images across a border, robots and pillars, by x.
         orders: (3, >= D) scratch; the last row becomes the row of each person in ``discs``, -1

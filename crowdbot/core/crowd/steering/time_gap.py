@@ -27,7 +27,7 @@ def limit_all(
     """Reduce accelerations so that speeds after the relaxation time leave the time gap, in place.
 
     Args:
-        discs to decides: as of `sorted_discs.sort_people`; velocity: (N, 2), m/s.
+        discs to decides: as in `sorted_discs.sort_people`; velocity: (N, 2), m/s.
         time to half_width: see `TimeGapSpec`.
         relaxation: time in which people reach the velocity that they have chosen, s.
         desired: (N, 2) accelerations, m/s^2.

@@ -28,7 +28,7 @@ def wander_all(
         ids: (N,) that the draws depend on.
         knots: the time in knots.
         deviation: see `WanderSpec`.
-        key: as of `Steering`.
+        key: as in `Steering`.
         desired: (N, 2) accelerations, m/s^2.
     """
     for i in range(desired.shape[0]):

@@ -50,8 +50,8 @@ def list_obstacles(
 ) -> int:
     """Write everything within range to ``work``; return the number of rows.
 
-    One more if walls that were not given may count. Uses the first six columns, and in row 0 the
-    fields of `CollisionHeader`; the others belong to the caller.
+    The number is one higher if walls beyond those given may matter. Row 0 is a `CollisionHeader`;
+    of the other rows the first six columns are written, the rest is free for the caller.
 
     Args:
         fastest: largest speed in later calls of `first_collision`, m/s.
@@ -198,7 +198,7 @@ def _touched(segment: SegmentRow, ux: float, uy: float, width: float, agent: Age
     """Return the time until a segment is touched, s; ``inf`` if never.
 
     Args:
-        width: as of `swept_width`.
+        width: from `swept_width`.
     """
     ax, ay, bx, by = segment.ax, segment.ay, segment.bx, segment.by
     if is_passed(ux, uy, width, ax, ay, bx, by):

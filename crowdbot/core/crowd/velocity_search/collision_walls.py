@@ -28,7 +28,7 @@ def is_passed(
     """Return True if a moving disc clearly never touches segment a-b.
 
     Args:
-        width: as of `swept_width`.
+        width: from `swept_width`.
     """
     a, b = ux * ay - uy * ax, ux * by - uy * bx
     beside = (min(a, b) > width) | (max(a, b) < -width)
@@ -44,7 +44,7 @@ def is_behind(
 
     Args:
         way: time times squared speed, m^2/s.
-        width: as of `swept_width`.
+        width: from `swept_width`.
     """
     return bool(min(ux * ax + uy * ay, ux * bx + uy * by) - width > (1.0 + 1e-6) * way)
 

@@ -293,7 +293,7 @@ def _candidates_of(
     base: int, direction: int, radius: int, half: float, drawn: bool,
     candidates: Array, regular: Array, frame: Array, result: Array,
 ) -> None:  # fmt: skip
-    """Write the candidates of all agents (N, S, 2), m/s; arguments as of `choose_velocities`."""
+    """Write the candidates of all agents (N, S, 2), m/s; arguments as in `choose_velocities`."""
     around = Surroundings(
         table, starts, low, height, decides, goal, walls, grid_frame, grid_first, grid_cells,
         reach, traits, settings, random, near, found, deciding,

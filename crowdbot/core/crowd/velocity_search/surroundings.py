@@ -25,7 +25,7 @@ from crowdbot.core.types.arrays import Array, Indices, Mask
 
 
 class DecisionTraitsRecord:
-    """Traits of an agent for the search; fields as of `AgentRecord`."""
+    """Traits of an agent for the search; fields as in `AgentRecord`."""
 
     preferred: float
     max_speed: float
@@ -34,12 +34,12 @@ class DecisionTraitsRecord:
 
 
 class SettingsRecord:
-    """Settings for all agents; fields as of `AgentRecord`.
+    """Settings for all agents; fields as in `AgentRecord`.
 
     Attributes:
-        wall_metres, wall_seconds: centre distance beyond which no wall matters is the first plus
-            the second times the fastest speed of a decision, and
-        wall_own: 1 if it counts together with the own speed, as `CompiledCost.reach_with_own`.
+        wall_metres, wall_seconds: no wall matters beyond a centre distance of the first plus the
+            second times the fastest speed of a decision.
+        wall_own: 1 if that speed is combined with the agent's, see `CompiledCost.reach_with_own`.
         wall_preferred: 1 if those seconds count at the preferred speed, as
             `CompiledCost.reach_at_preferred`.
         wall_grid: the reach of the `SegmentGrid`, m.

@@ -92,7 +92,7 @@ class DecisionTables(NamedTuple):
     """Records for the decisions of one set of agents; all but the settings are scratch.
 
     Attributes:
-        discs, table, near, found, deciding, settings: as of `Surroundings`; ``discs`` are those of
+        discs, table, near, found, deciding, settings: as in `Surroundings`; ``discs`` are those of
             ``table`` before sorting.
         starts, order: for `neighbours.sort_discs`.
     """
