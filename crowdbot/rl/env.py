@@ -17,8 +17,8 @@ from crowdbot.rl.window import RENDER_MODES
 class NavEnv(Env):
     """A robot that drives to its goal among people: a vector environment of one world.
 
-    An action is v, w and, where the drive can, vy, from -1 to 1: from the least to the largest of
-    the robot's limits. An episode ends when the robot arrives; it is truncated at the time limit.
+    An action is v, w and, if the drive moves sideways, vy; -1 and 1 are the robot's limits. An
+    episode ends when the robot arrives; it is truncated at the time limit.
 
     Args:
         arguments: as in `crowdbot.rl.env_setup.resolve`.

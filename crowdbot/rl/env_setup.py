@@ -32,12 +32,12 @@ class EnvSetup:
     """Worlds, observation and reward of environments.
 
     Attributes:
-        levels: scenarios of each level, of which an episode has one.
+        levels: scenarios of each level of the curriculum; an episode has one of its level.
         observation, reward: their specs.
         draws: number of different draws of people per scenario, which are reused; None: a new
             draw in every episode.
         edition: True to use the suite's own draw of people, as its scored runs do.
-        spread: of starts and goals; None: those of the scenarios.
+        spread: range of random starts and goals; None: those of the scenarios.
         ends_at_contact: True if a contact with a person ends the episode.
     """
 
@@ -52,7 +52,7 @@ class EnvSetup:
 
     @cached_property
     def blueprints(self) -> dict[str, Blueprint]:
-        """Return each scenario resolved, by id; their robots must be alike.
+        """Return scenario id -> resolved scenario; their robots must be alike.
 
         Raises:
             InputError: the robots differ, or batches of worlds cannot simulate one.

@@ -98,7 +98,7 @@ class EpisodeLog:
         self._people.append(sample)
 
     def _end_contacts(self) -> None:
-        """Keep the contacts that have ended since the last step: the last one of each person."""
+        """Store contacts that ended since the last step; of each person only the last one."""
         _, touches = s.contact_with(self._world.flat)
         for i in np.flatnonzero(touches[:, s.TOUCHES] != self._touches).tolist():
             self._contacts.append(self._contact(touches, i))
@@ -110,7 +110,7 @@ class EpisodeLog:
         return {**found, "agent": float(engine.agents.id[i]) if engine else -1.0}
 
     def _all_contacts(self) -> dict[str, list[float]]:
-        """Return the contacts of the episode by column; those that go on end now."""
+        """Return column -> values of the episode's contacts; ongoing ones end at present."""
         _, touches = s.contact_with(self._world.flat)
         going_on = np.flatnonzero(touches[:, s.TOUCHING] != 0.0).tolist()
         rows = [*self._contacts, *(self._contact(touches, i) for i in going_on)]

@@ -1,4 +1,4 @@
-"""Draws of episodes: scenario and seeds of a world's n-th episode, from its seed alone."""
+"""Scenario and seeds of a world's n-th episode, which depend on the world's seed alone."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ class EpisodeCourse:
     """The sequence of episodes of one world.
 
     Args:
-        seed: of the world.
-        level: of the curriculum, at the beginning.
+        seed: seed of the world.
+        level: first level of the curriculum.
 
     Attributes:
-        level: of the next episode.
+        level: level of the next episode.
     """
 
     def __init__(self, setup: EnvSetup, seed: int, level: int = 0) -> None:

@@ -113,7 +113,7 @@ class _Reader:
         )
 
     def _commands(self, recording: Path) -> Array:
-        """Return the command (T, 3) of each step: the one that held at its end."""
+        """Return the command (T, 3) in force at the end of each step."""
         given = read_commands(recording, Topic.COMMAND, Topic.COMMAND)
         held = np.maximum(np.searchsorted(given.t, self._at[1:] - _SHORTER, side="right") - 1, 0)
         columns = [given.v_sc[held], given.w_sc[held], np.zeros(len(held))]
@@ -161,7 +161,7 @@ class _Reader:
         ])  # fmt: skip
 
     def _touching(self, n: int, *, wall: bool) -> Array:
-        """Return (1,) the share of a step with a contact with people, or with a wall."""
+        """Return the fraction (1,) of step n in contact with people, or with a wall if ``wall``."""
         contacts, (begin, end) = self._found.contacts, self._at[n : n + 2]
         if contacts is None:
             return np.zeros(1)
@@ -172,6 +172,6 @@ class _Reader:
 
 
 def _nearest(t: Array, at: Array) -> Indices:
-    """Return the samples nearest to times; both ascend."""
+    """Return the indices of the samples ``t`` nearest to the times ``at``; both ascend."""
     after = np.clip(np.searchsorted(t, at), 1, max(len(t) - 1, 1))
     return np.where(at - t[after - 1] <= t[after] - at, after - 1, after)

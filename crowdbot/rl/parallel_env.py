@@ -74,10 +74,10 @@ class ParallelNavEnv(ParallelEnv):
         """Advance all robots by one period of their planner.
 
         Args:
-            actions: of each robot that goes on, from -1 to 1.
+            actions: action of each robot that is not done, from -1 to 1.
 
         Raises:
-            InputError: a robot that goes on has no action, or one that is wrong.
+            InputError: a robot that is not done has no action, or an invalid one.
         """
         if not self.agents:
             return {}, {}, {}, {}, {}
@@ -118,7 +118,7 @@ class ParallelNavEnv(ParallelEnv):
         }
 
     def render(self) -> Any:
-        """Return a picture (H, W, 3) uint8 of the world from above, if asked for."""
+        """Return a picture (H, W, 3) uint8 of the world from above, if the mode makes pictures."""
         self._show()
         return picture(self.rollout, 0) if self.render_mode == "rgb_array" else None
 

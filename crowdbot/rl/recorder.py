@@ -24,9 +24,9 @@ class EpisodeRecorder(Wrapper):
 
     Args:
         env: `NavEnv`, wrapped or not.
-        folder: gets a replay page ``episode-00000.html`` of each episode that ends, numbered on
-            from those that are there; None: none.
-        every: only each n-th episode gets a page.
+        folder: where replay pages ``episode-00000.html`` of finished episodes are written; numbers
+            continue after those of existing pages; None: no pages.
+        every: write a page for every n-th episode only.
 
     Raises:
         InputError: it is another environment, or ``every`` is not positive.

@@ -47,7 +47,7 @@ def _check_reach(world: BatchWorld, tasks: Sequence[Task]) -> None:
     """Check that no wall separates a start or goal from that of the scenario.
 
     Raises:
-        InputError: one does.
+        InputError: a wall does.
     """
     walls = world.blueprint.parts.walls
     for before, task in zip(world.blueprint.tasks, tasks, strict=True):

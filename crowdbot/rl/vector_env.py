@@ -176,7 +176,7 @@ class NavVectorEnv(VectorEnv):
         self._ended[which], self._steps[which] = False, 0
 
     def _infos(self, which: Mask, result: StepResult | None = None) -> dict[str, Any]:
-        """Return further values of worlds: time, arrival, contact, and which scenario it is."""
+        """Return ``infos`` of some worlds: time, arrival, contact and scenario."""
         none = np.zeros(self.num_envs, np.bool_)
         arrived = none if result is None else result.arrived
         touched = none if result is None else result.touched

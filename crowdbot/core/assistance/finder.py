@@ -82,7 +82,7 @@ class PersonFinder:
 
     Args:
         target: the person or group.
-        rng: errors of poses.
+        rng: random generator of pose errors.
     """
 
     target: Target
@@ -153,7 +153,7 @@ class TrackingFinder(PersonFinder):
 
 
 def _nearest(member: KnownPerson, t: float, tracks: Tracks, taken: set[int]) -> int:
-    """Return the number of the track that is taken for a person; -1: none is near enough."""
+    """Return the number of the track that matches a person; -1: none is near enough."""
     x, y = member.at(t)
     walks = math.hypot(member.vx, member.vy) >= _WALKS
     gone = _PART * math.hypot(member.vx, member.vy) * (t - member.seen) if walks else 0.0

@@ -98,7 +98,7 @@ def task_with_person(task: Task, target: Target) -> Task:
     """Return the robot's task, with the person's pose that its planner may know at the start.
 
     Args:
-        task: with the robot's body, and of ``lead`` with the goal zone.
+        task: task with the robot's body; for ``lead`` also with the goal zone.
         target: the person or group.
     """
     person: PersonTask = target.task()

@@ -17,7 +17,7 @@ class LedPeople:
 
     Attributes:
         robot: its number.
-        target: who they are; its goal is a `LeadGoal`.
+        target: these people; its goal is a `LeadGoal`.
         reach: how far the robot reaches, m.
     """
 
@@ -33,7 +33,7 @@ class LedPeople:
 
         Args:
             crowd: flat state.
-            x, y: of the robot, m.
+            x, y: position of the robot, m.
         """
         goal = self.target.goal
         assert isinstance(goal, LeadGoal)

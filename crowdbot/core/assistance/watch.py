@@ -22,7 +22,7 @@ class PersonWatch:
 
     Args:
         task: of the robot.
-        target: who it is.
+        target: its person or group.
         outline: of the robot.
     """
 

@@ -177,7 +177,7 @@ class Batch:
         self._scanners = np.zeros((count * scanners, len(SCANNER_FIELDS), ENTRY), np.int64)
 
     def _show(self, w: int, key: int) -> None:
-        """Begin a world: its tables, its time, its robots at rest."""
+        """Initialise row ``w`` of all arrays for its world: tables, time, robots at rest."""
         self._show_tables(w)
         self._table[w, k.NOISE_KEY], self._table[w, k.NOW] = key % _MOST_KEY, 0
         self.worlds[w].begin_noise(key % _MOST_KEY)

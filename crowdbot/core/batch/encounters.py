@@ -1,4 +1,4 @@
-"""Space that people have around a robot, compiled: the quantities of the scores, step by step.
+"""The space that robots leave to people, as metrics measure it, at each step; compiled.
 
 Gap, advance and demanded work are those of the metrics ``intrusion`` and ``push_work``, with their
 default parameters, but computed once per step. The push of people who are forced aside is that of

@@ -19,13 +19,13 @@ _HEAD_START = 100
 
 
 def parts_of(worlds: int, threads: int, people: int) -> list[tuple[int, int]]:
-    """Return the first and end world of each thread.
+    """Return the first world and the end (exclusive) of each thread.
 
     The first thread starts at once and the others after waking up, so it gets more worlds.
 
     Args:
-        worlds: how many, one or more.
-        threads: how many at most.
+        worlds: number of worlds, at least 1.
+        threads: largest number of threads.
         people: approximate number in each world.
     """
     count = max(1, min(threads, worlds))
@@ -72,7 +72,7 @@ class Batches:
         """Advance some worlds by one step each, see `Batch.step`.
 
         Args:
-            which: rows of the worlds, rising.
+            which: rows of the worlds, ascending.
         """
 
         def one(number: int) -> None:

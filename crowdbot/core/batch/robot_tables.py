@@ -45,7 +45,7 @@ class DriveStateRecord:
 
     Attributes:
         v, w, vy: the command after slew limits, m/s and rad/s.
-        wanted_v, wanted_w, wanted_vy: the command.
+        wanted_v, wanted_w, wanted_vy: the command before slew limits.
         clear: lower bound of the distance between its outline and walls, m.
         blocked: ticks in which a wall stopped it, since the step began.
         touched: ticks in which a person touched it, since the step began.

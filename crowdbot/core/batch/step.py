@@ -124,7 +124,7 @@ def meet_people(w: int, worlds: Indices, crowds: Indices, drives: Array) -> None
 
 @kernel
 def _advance_people(world: Indices, crowd: Indices, groups: Indices) -> bool:
-    """Decide if that is due, then advance people and contacts by a tick."""
+    """Let people decide if a decision is due, then advance people and contacts by a tick."""
     counts, now, sound = ints1(crowd, c.COUNTS), world[NOW], True
     if now % counts[c.EVERY] == 0:
         sound = decide(crowd, groups, now * TICK)
@@ -144,7 +144,7 @@ def _advance_people(world: Indices, crowd: Indices, groups: Indices) -> bool:
 
 @kernel
 def _advance_robots(world: Indices, crowd: Indices, robots: Indices, drives: Array) -> None:
-    """Move all robots by a tick; note who touched, pushed, was stopped and arrived."""
+    """Move all robots by a tick; record contacts, pushes, stops at walls and arrivals."""
     flat, people = floats1(crowd, c.FLAT), world[PEOPLE]
     rows = as_rows(floats2(crowd, c.ROBOTS), ROBOT)
     felt_first = HEADER_SIZE + people * AGENT_COLUMNS

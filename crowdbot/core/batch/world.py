@@ -37,7 +37,7 @@ class BatchWorld:
     Attributes:
         blueprint: its scenario.
         engine: its people; None without any.
-        robots: (R, 8) rows of the robots as people feel them.
+        robots: (R, 8) states of the robots, see `RobotRecord`.
         compiled: True if people decide in compiled code alone.
         steady: True if no sensor outside of compiled code is due within a step.
         crowd, groups, scanners: arrays for compiled code.

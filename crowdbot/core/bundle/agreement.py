@@ -18,10 +18,10 @@ def agree(a: Score, b: Score) -> bool:
 
 
 def name_of(score: Score) -> str:
-    """Return metric and variant."""
+    """Return the name of a score: metric and variant."""
     return f"{score.metric}.{score.variant}"
 
 
 def shown(score: Score) -> str:
-    """Return the value, or why there is none."""
+    """Return a score's value as text, or the reason why it has none."""
     return f"{score.value!r}" if score.value is not None else f"{score.status} ({score.reason})"

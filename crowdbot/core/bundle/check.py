@@ -123,7 +123,7 @@ def _digest_problems(archive: Archive, run: ClaimedRun) -> Iterator[str]:
 
 
 def _list_problems(manifest: Manifest) -> Iterator[str]:
-    """Yield runs that are listed twice or share a folder."""
+    """Yield contradictions in the manifest: planner, duplicate runs, seeds, number of runs."""
     yield from planner_problems(manifest.planner)
     if not manifest.runs:
         yield "there is no run in it"
@@ -144,7 +144,7 @@ def _list_problems(manifest: Manifest) -> Iterator[str]:
 
 
 def _strangers(manifest: Manifest, names: set[str]) -> Iterator[str]:
-    """Yield members that belong to no run of the bundle."""
+    """Yield members that belong to no run, and missing files of planner or runs."""
     own = {f"{run.directory}/{name}" for run in manifest.runs for name in _OF_A_RUN}
     recordings = {f"{run.directory}/{files.RECORDING}" for run in manifest.runs}
     read = {f"{PLANNER_FILES}{d}{KEPT}": d for _, d in digests_of_files(manifest.planner)}
@@ -163,7 +163,7 @@ def _strangers(manifest: Manifest, names: set[str]) -> Iterator[str]:
 
 
 def _place_problems(run: ClaimedRun, scenario: Scenario, axes: Mapping[str, str]) -> Iterator[str]:
-    """Yield labels and crowds that differ from the scenario's, since intervals and orders use them.
+    """Yield axis labels and crowds that differ from the scenario's: intervals and orders use them.
 
     The crowd's fingerprint may change between versions.
     """

@@ -101,7 +101,7 @@ def load_entries(
     Args:
         folder: folder of the bundles.
         registry: the installed components.
-        trusted: public keys of organisers, whose verification records are believed.
+        trusted: public keys of organisers, whose verification records are accepted.
 
     Raises:
         InputError: no such folder, or no bundle in it.

@@ -82,7 +82,7 @@ def _table(table: Standings, here: Path) -> dict[str, Any]:
 def _mains(
     table: Standings, entry: LeaderboardEntry, rows: Sequence[Mapping[str, Any]], names: list[str]
 ) -> list[dict[str, str]]:
-    """Return the four main scores beside an entry's name; ``sort`` is the plain number."""
+    """Return name, value, interval and sort key of each of an entry's four main scores."""
     ranked = [e.name for e in table.entries if e.ranked]
     mains = []
     for name, row in zip(names, rows, strict=True):

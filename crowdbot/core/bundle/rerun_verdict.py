@@ -136,7 +136,7 @@ def verdict_of(reruns: Sequence[Rerun]) -> RerunVerdict:
 
 
 def _not_compared(others: Sequence[Rerun]) -> list[str]:
-    """Return scores of runs that differ which have no tolerance."""
+    """Return the names of scores that have no tolerance for comparing different runs."""
     found = {(s.metric, s.variant) for a in others for s in a.claimed.scores}
     left = sorted((m, v) for m, v in found if m not in WALL_CLOCK and v != variant_of(m))
     return [f"{metric}.{variant}" for metric, variant in left]

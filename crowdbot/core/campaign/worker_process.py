@@ -148,7 +148,7 @@ class WorkerProcess:
         return done
 
     def _died(self) -> JobOutcome | None:
-        """Try again with a new process, or give up."""
+        """Repeat the job in a new process; return its failure after `TRIES` dead processes."""
         assert self._process is not None
         self._deaths += 1
         code = self._process.wait()

@@ -71,8 +71,8 @@ class CrowdEngine:
         goal_column: first column of the point that policies see as the goal: the goal, or a
             waypoint.
         groups: agents with the same policy and the same view, when there is a robot.
-        ticks_per_decision: between two decisions.
-        parameters: what `tick` takes of people, world and scratch, as numbers.
+        ticks_per_decision: number of ticks between two decisions.
+        parameters: arguments of `tick` for people, world and scratch, as numbers.
         heeds_robots, room, evades: arguments of `evade_robots`.
 
     Raises:
@@ -407,7 +407,7 @@ def _alike(outline: Array, robots: int) -> Array:
 
 
 def _limits(policies: Sequence[CrowdPolicy], agents: Agents, world: CrowdWorld) -> Array:
-    """Return how close each centre may come to walls and pillars (N,), m; 0 without a limit."""
+    """Return the smallest distance (N,) of each centre from walls and pillars, m; 0: no limit."""
     radius = agents.radius
     least = np.minimum(OUTSIDE, 0.5 * radius)
     limit = np.maximum(radius - MOST_OVERLAP, least) if world.firm else least
@@ -416,7 +416,7 @@ def _limits(policies: Sequence[CrowdPolicy], agents: Agents, world: CrowdWorld) 
 
 
 def _who_plans(agents: Agents, world: CrowdWorld) -> NDArray[np.bool_]:
-    """Return (N,) agents whose policy sees robots; people who notice late do not."""
+    """Return (N,) True for agents whose policy sees robots: not those who notice robots late."""
     return ~(agents.ignores_robot | agents.late) & world.response.shown_to_policies
 
 

@@ -168,8 +168,8 @@ def try_to_re_enter(
 ) -> None:
     """Try one point of the in-portal; start a new trip there if it is free.
 
-    The point lies in the in-portal as the agent left the out-portal (`RulesRecord.keep_offset`), or
-    is drawn again in each attempt, as it is where something solid stands at the former.
+    With `RulesRecord.keep_offset` it has the same relative position as where the agent left the
+    out-portal, unless something solid stands there; otherwise it is drawn again in each attempt.
     """
     traits = people.traits[i]
     if traits.at_goal == RETURN:
@@ -216,7 +216,7 @@ def _try_to_come_back(
     robots: Rows[RobotRecord],
     discs: Array, now: float,
 ) -> None:  # fmt: skip
-    """Try one point of the origin; begin the way again there if it is free."""
+    """Try one point of the origin; restart the route there if it is free."""
     key = world.goal_key
     x, y = place_of_entry(agents, i, people, key)
     agents[i].attempt += 1.0

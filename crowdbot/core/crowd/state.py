@@ -51,8 +51,8 @@ class PersonRecord:
             aimed at, 0 for none.
         waypoint_x, waypoint_y: the point walked to.
         aside: fraction of the free room beside the corner that the person uses, 0 to 1.
-        slow_for: for how long there was no headway.
-        detours: how often another way was looked for.
+        slow_for: time without progress.
+        detours: number of searches for another way.
     """
 
     x: float

@@ -78,7 +78,7 @@ def _boxes(named: Mapping[str, Any]) -> dict[str, list[float]]:
 
 
 def _bounds(box: Any) -> list[float]:
-    """Return x0, x1, y0, y1 of a polygon of corners, or of the bounds themselves."""
+    """Return the bounds x0, x1, y0, y1 of a polygon; given bounds are returned unchanged."""
     if len(box) == 4 and not hasattr(box[0], "__len__"):
         return list(box)
     xs, ys = [p[0] for p in box], [p[1] for p in box]

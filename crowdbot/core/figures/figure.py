@@ -33,7 +33,7 @@ class FigurePart:
     Attributes:
         points: (N, 3) m, of a figure 1 m high.
         triangles: (M, 3) rows of points.
-        colour: red, green, blue, 0 to 1, as screens have it (sRGB).
+        colour: red, green, blue, 0 to 1, sRGB.
         uv: (N, 2) place in the texture, from its top left corner; None without.
         texture: PNG; empty without.
     """

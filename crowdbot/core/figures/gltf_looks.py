@@ -47,14 +47,14 @@ def looks_of(file: GltfFile, primitive: dict[str, Any]) -> Looks:
 
 
 def _srgb(linear: Array) -> Array:
-    """Return colours (3,), which files have linear in light, as screens show them."""
+    """Return linear colours (3,) of a file as sRGB, 0 to 1."""
     clipped = np.clip(linear, 0.0, 1.0)
     bright = 1.055 * np.maximum(clipped, 0.0031308) ** (1.0 / 2.4) - 0.055
     return np.where(clipped <= 0.0031308, 12.92 * clipped, bright)
 
 
 def _placed(uv: Array, moved: dict[str, Any]) -> Array:
-    """Return places in a texture after the extension KHR_texture_transform."""
+    """Return texture coordinates (N, 2) after the extension KHR_texture_transform."""
     turn = float(moved.get("rotation", 0.0))
     c, s = np.cos(turn), np.sin(turn)
     scaled = uv * np.array(moved.get("scale", (1.0, 1.0)), float)

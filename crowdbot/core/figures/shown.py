@@ -39,7 +39,7 @@ def shown_figure(figure: Figure) -> dict[str, Any]:
 
 
 def _merged(points: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the points that are kept, and for each point its row among them."""
+    """Merge close points: return rows of those kept, and for each point its row among these."""
     cells = np.round(points / _CELL).astype(np.int64)
     _, kept, merged = np.unique(cells, axis=0, return_index=True, return_inverse=True)
     return kept, merged.ravel()

@@ -1,4 +1,4 @@
-"""Entry of a robot's centre to its goal zone, a polygon (K, 2) of any orientation."""
+"""Entry of a robot's centre into its goal zone, a polygon (K, 2) of any orientation."""
 
 from __future__ import annotations
 

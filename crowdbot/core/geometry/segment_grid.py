@@ -26,7 +26,7 @@ class SegmentGrid(NamedTuple):
         frame: (5,) x and y of the lower left corner, m; cells per metre; columns and rows. With 0
             cells per metre a single cell covers the whole floor.
         first: (C + 1,) where each cell's rows of ``near`` begin, row by row of cells.
-        near: (K,) indices of segments, rising within a cell.
+        near: (K,) indices of segments, ascending within a cell.
     """
 
     frame: Array

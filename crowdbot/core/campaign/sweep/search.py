@@ -108,7 +108,7 @@ class TrialResult:
 class Sweep:
     """The result: trials sorted from best to worst, those without a score last.
 
-    ``usual``: the planner's defaults.
+    ``usual``: the result of the planner's defaults.
     """
 
     request: SweepRequest

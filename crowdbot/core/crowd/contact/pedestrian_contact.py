@@ -120,7 +120,7 @@ def _place(
     order: NDArray[np.int64],
     placed: Rows[PlacedRecord],
 ) -> tuple[int, float]:
-    """Write those present to ``placed``, in order, not pushed yet.
+    """Write present people to ``placed``, in order, with zero pushes.
 
     Returns:
         how many, and the largest radius among them, m.

@@ -84,7 +84,7 @@ def reacts(
 def _farthest_sight(
     agents: People, i: int, robot: RobotRecord, response: DecisionResponse
 ) -> float:
-    """Return a bound of `_sight` that takes no square root, m."""
+    """Return an upper bound of `_sight`, computed without a square root, m."""
     speed = abs(robot.vx) + abs(robot.vy) + abs(agents[i].vx) + abs(agents[i].vy)
     return max(float(response.sight), float(_ROUNDED * response.sight_time * speed))
 

@@ -12,11 +12,11 @@ class DecisionResponse:
     """Parameters of `crowdbot.core.crowd.response.evasion`; meanings as in `Human`.
 
     Attributes:
-        view_cosine: of half the field of view.
+        view_cosine: cosine of half the field of view.
         lateral, braking, total: largest accelerations.
         decision: time between decisions, s.
         seen_standing, seen_moving: `Human.standing_speed`, `Human.moving_speed`.
-        all_stop: 1 if all stop short.
+        all_stop: 1 if `Human.all_stop_short`.
     """
 
     sight: float

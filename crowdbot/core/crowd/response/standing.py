@@ -81,7 +81,7 @@ def stands(robot: RobotRecord, extent: float, standing: float, moving: float) ->
 def _away(
     agents: People, i: int, nx: float, ny: float, gap: float, response: TickResponse
 ) -> float:
-    """Return the acceleration away from a standing robot in direction ``n``, m/s^2; 0: none."""
+    """Return the acceleration away from a standing robot in direction ``n``, m/s^2, at least 0."""
     closing = agents[i].vx * nx + agents[i].vy * ny
     room = gap - response.standing_gap
     lean = response.standing_stiffness * max(0.0, -room)

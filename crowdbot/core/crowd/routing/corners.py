@@ -69,7 +69,7 @@ def _rows(ring: Array) -> Array:
 
 @kernel
 def _look_out(table: Array, sight: Sight) -> None:
-    """Fill in the free room at each corner."""
+    """Set column `ROOM`: the free distance outwards from each corner, m."""
     for v in range(table.shape[0]):
         x, y = table[v, X], table[v, Y]
         fx, fy = x + MOST_ROOM * table[v, OUT_X], y + MOST_ROOM * table[v, OUT_Y]

@@ -29,7 +29,7 @@ class Router:
 
     Args:
         agents: all, present or to come.
-        walls, pillars: (S, 4), (P, 3) what people walk around, m.
+        walls, pillars: (S, 4), (P, 3) obstacles, m.
         routing: parameters of their choice of paths.
     """
 

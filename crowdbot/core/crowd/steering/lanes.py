@@ -45,7 +45,7 @@ def aside_of(
     half_width: float,
     follow: float,
 ) -> float:
-    """Return how far row a tends to its left, -1 to 1."""
+    """Return how strongly the person in row a tends to its left, -1 to 1."""
     away, towards, comers, all_ = 0.0, 0.0, 0.0, 0.0
     for b in range(first_within(discs, a, REACH), discs.shape[0]):
         dx, dy = discs[b].x - discs[a].x, discs[b].y - discs[a].y

@@ -48,7 +48,7 @@ def part_numbers(spec: SteeringSpec) -> Array:
 
 
 class SteeringParts:
-    """A crowd's steering parts, with room for what they compute."""
+    """A crowd's steering parts, with scratch arrays."""
 
     def __init__(self, steering: Steering) -> None:
         self.numbers, self._key = part_numbers(steering.spec), np.uint64(steering.key)
@@ -61,7 +61,7 @@ class SteeringParts:
         Args:
             relaxation: time in which the policy reaches the velocity that it has chosen, s; 0 is
                 the time between decisions.
-            desired: (N, 2) what the policy wants, m/s^2; left as it is.
+            desired: (N, 2) accelerations of the policy, m/s^2; not changed.
         """
         agents, boundary, changed = view.agents, view.periodic_boundary, np.array(desired)
         if agents is not self._agents:

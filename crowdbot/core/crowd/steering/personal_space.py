@@ -64,7 +64,7 @@ def push_all(
 
 @inline_kernel
 def _who_decides(discs: Rows[DiscRecord], a: int, decides: Mask) -> int:
-    """Return the person of row a who decides, else -1."""
+    """Return the index of the person in row a if that person decides, else -1."""
     i = int(discs[a].index)
     return i if i >= 0 and decides[i] else -1
 

@@ -62,7 +62,7 @@ def first_farther(
 
 @array_kernel
 def _enters(border: float, width: float, start: float, u: float) -> float:
-    """Return the time from which the way is between a border and the other one, s.
+    """Return the time at which the path enters the strip ``border`` to ``border + width``, s.
 
     Negative if it is already; ``inf`` if it never will be.
     """
@@ -76,7 +76,7 @@ def _enters(border: float, width: float, start: float, u: float) -> float:
 
 @array_kernel
 def _left(i: int, columns: float, u: float) -> bool:
-    """Return True if column (or row) i is beyond the grid, and the way goes farther from it."""
+    """Return True if column (or row) i is beyond the grid, and the path leads away from it."""
     return bool((i < 0 and u <= 0.0) or (i >= columns and u >= 0.0))
 
 

@@ -26,7 +26,7 @@ class AgentRecord:
         descends: 1 if gradients are followed.
         broken: 1 after a function has returned NaN; for internal use.
         asked_x, asked_y, asked_radius: disc with all velocities of the search.
-        walls_within: only the walls at most so far away are given; 0: all in range.
+        walls_within: largest distance of the walls that are given; 0: all in range.
         floor: address of the `FloorRecord`.
     """
 

@@ -268,7 +268,7 @@ def choose_velocities(
 
 @inline_kernel
 def _fetch_table(i: int, ranked: Array, indices: Indices, first: Indices) -> None:
-    """Load what the search of agent i reads first, while the one before it decides."""
+    """Prefetch the first data of agent i's search while the previous agent decides."""
     if i < 0:
         return
     bound, x, y, start = ranked[i, 0], ranked[i, 1], ranked[i, 2], first[i]

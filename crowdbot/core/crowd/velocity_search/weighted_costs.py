@@ -111,7 +111,7 @@ class WeightedCosts:
     """Weighted cost functions for one set of agents.
 
     Args:
-        relaxation_time: the policy's, s.
+        relaxation_time: relaxation time of the policy, s.
         parity: reproduce the original engine, defects included; for comparisons only.
         weight: (N,) see `AgentRecord`; 1 by default.
     """
