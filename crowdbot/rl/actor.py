@@ -32,7 +32,7 @@ class StepResult:
         reward: (W,).
         arrived: (W,) True where the robot has entered its goal zone in this step or before.
         touched: (W,) True where a person touched it in this step.
-        late: (W,) True where its time is over and it has not arrived.
+        late: (W,) True where the time limit has passed and it has not arrived.
     """
 
     reward: Array
@@ -51,7 +51,7 @@ class Actor:
     Attributes:
         context: constant data of the robot.
         low, high: bounds of observations.
-        size: how many numbers an action has: v, w and, where the drive can, vy.
+        size: number of elements of an action: v, w and, if the drive moves sideways, vy.
     """
 
     def __init__(self, setup: EnvSetup, worlds: int, robot: int) -> None:
@@ -94,7 +94,7 @@ class Actor:
         """Return the outcome of a step.
 
         Args:
-            rows: (W, R, 8) of all robots after it.
+            rows: (W, R, 8) states of all robots after it, see `RobotRecord`.
             given: (W, 3) commands.
             here: (W,) True for worlds that were stepped.
         """
@@ -128,7 +128,7 @@ class Actor:
         """Return observations (W, N).
 
         Args:
-            rows: (W, R, 8) of all robots.
+            rows: (W, R, 8) states of all robots, see `RobotRecord`.
             fresh, stepped: (W,) as in `RobotInputs`.
             people: (W, M, 5) as in `RobotInputs`.
         """

@@ -32,7 +32,7 @@ class AgentParameters(NamedTuple):
     Attributes:
         traits: (N,) of each.
         route: (W,) points of all routes.
-        origin: (N,) where each comes in.
+        origin: (N,) point or area at which each enters.
         entry_order: (N,) rows of agents by id: the order in which they enter.
     """
 
@@ -90,7 +90,7 @@ class RulesRecord:
         goal_ahead: 1 if their goal in the out-portal is opposite to where their trip starts.
         goals_wrap: 1 if goals wrap with their agents.
         dissipation: as in `CrowdWorld`.
-        pillars: how many there are.
+        pillars: number of pillars.
         body_dissipation: as in `CrowdWorld`.
     """
 
@@ -111,7 +111,7 @@ class WorldParameters(NamedTuple):
     Attributes:
         walls, entrance, out: as there.
         boundary: (4,) x0, x1, y0, y1, m, infinite where the world has no border.
-        rules, response: (1,) what holds for all; what people do about robots tick by tick.
+        rules, response: (1,) rules for all people; their response to robots in each tick.
         goal_key: key of the counter-based random numbers of goals and entries.
         solids: (M, 5) sides x0, y0, x1, y1 of convex outlines, m, and the outline's number.
         frame, first, near: `SegmentGrid` of the walls, for bodies.
@@ -152,7 +152,7 @@ class WorldParameters(NamedTuple):
 
 
 def _sides(outlines: Sequence[Array]) -> Array:
-    """Return the sides of outlines (K, 2), (M, 5), and the outline of each."""
+    """Return the sides (M, 5) of outlines (K, 2): x0, y0, x1, y1, m, and the outline's number."""
     rows = [
         np.column_stack([outline, np.roll(outline, -1, axis=0), np.full(len(outline), k)])
         for k, outline in enumerate(outlines)
