@@ -31,14 +31,9 @@ _ONE_THREAD = (
 )  # fmt: skip
 #: A step of Drake's contact solver allocates and frees hundreds of small objects, and glibc caches
 #: seven freed ones per size; with more the plant's step is a quarter faster. In large pages, where
-#: the system offers them on request, a run takes 5 % less, and 3 % less if arrays up to 32 MiB and
-#: the free end of the heap stay with the process, which then asks for no new pages all the time.
-#: The C library reads this at process start; only glibc does, and before 2.35 it has no large
-#: pages.
-_ALLOCATOR = {
-    "GLIBC_TUNABLES": "glibc.malloc.tcache_count=400:glibc.malloc.hugetlb=1"
-    ":glibc.malloc.mmap_threshold=33554432:glibc.malloc.trim_threshold=1073741824"
-}
+#: the system offers them on request, a run takes 5 % less. The C library reads this at process
+#: start; only glibc does, and before 2.35 it has no large pages.
+_ALLOCATOR = {"GLIBC_TUNABLES": "glibc.malloc.tcache_count=400:glibc.malloc.hugetlb=1"}
 _START = (
     "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
     "from crowdbot.core.support.gc_throttle import throttle_gc; throttle_gc(); "
