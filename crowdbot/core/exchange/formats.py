@@ -11,7 +11,7 @@ from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.rows import RowTable
 from crowdbot.core.exchange.scene import Draft
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.trajectories.data_sets.homography import AS_THEY_SAY, VideoScale
+from crowdbot.core.trajectories.data_sets.homography import AS_STATED, VideoScale
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,7 @@ class Context:
     registry: Registry
     name: str
     opened: dict[Path, OpenedScene] = field(default_factory=dict)
-    scale: VideoScale = AS_THEY_SAY
+    scale: VideoScale = AS_STATED
 
     def open(self, path: Path) -> OpenedScene:
         """Open a file; one that is given and named by another is read once.

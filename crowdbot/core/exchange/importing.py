@@ -18,7 +18,7 @@ from crowdbot.core.exchange.scene import Draft, id_of
 from crowdbot.core.exchange.ways_out import keep_ways
 from crowdbot.core.exchange.write import WrittenLine, document
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.trajectories.data_sets.homography import AS_THEY_SAY, VideoScale
+from crowdbot.core.trajectories.data_sets.homography import AS_STATED, VideoScale
 from crowdbot.dsl.text.diagnostics import Diagnostic
 from crowdbot.errors import InputError, SpecError
 
@@ -43,7 +43,7 @@ class Imported:
 
 
 def import_files(
-    paths: Sequence[Path], name: str, registry: Registry, scale: VideoScale = AS_THEY_SAY
+    paths: Sequence[Path], name: str, registry: Registry, scale: VideoScale = AS_STATED
 ) -> Imported:
     """Read files of other programs as scenarios that validate.
 

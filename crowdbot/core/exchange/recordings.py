@@ -19,7 +19,7 @@ from crowdbot.core.trajectories.data_sets.homography import VideoScale, projecte
 from crowdbot.core.trajectories.raw_table import as_number
 from crowdbot.core.trajectories.table_columns.names import FRAMES, USUAL_NAMES
 from crowdbot.core.trajectories.table_columns.units import unit_of, without_unit
-from crowdbot.core.trajectories.text_table import TOLD
+from crowdbot.core.trajectories.text_table import SEPARATOR_LINE
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
 from crowdbot.errors import SpecError
 
@@ -147,7 +147,11 @@ def _names(rows: Sequence[Sequence[str]], columns: Mapping[str, int]) -> dict[st
 
 def _is_empty(line: str) -> bool:
     """Return True for a line without cells: blank, a comment, or a spreadsheet's ``sep=;``."""
-    return not line.strip() or line.lstrip().startswith("#") or TOLD.fullmatch(line) is not None
+    return (
+        not line.strip()
+        or line.lstrip().startswith("#")
+        or SEPARATOR_LINE.fullmatch(line) is not None
+    )
 
 
 def _top(lines: Sequence[str]) -> int:

@@ -32,7 +32,7 @@ from crowdbot.core.registry.registry import Registry, discover
 from crowdbot.core.scenarios.named_crowds import open_crowd
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.text_files import LARGEST_TABLE, input_bytes, input_text
-from crowdbot.core.trajectories.data_sets.homography import AS_THEY_SAY, VideoScale
+from crowdbot.core.trajectories.data_sets.homography import AS_STATED, VideoScale
 from crowdbot.errors import CrowdbotError, InputError
 
 #: Spread of the first generation, as a share of each parameter's range.
@@ -66,7 +66,7 @@ class FitTask:
     files: tuple[str, ...] = ()
     warm_up: float = 5.0
     duration: float = 7.0
-    scale: VideoScale = AS_THEY_SAY
+    scale: VideoScale = AS_STATED
 
     @property
     def reference(self) -> RealismReference:

@@ -8,7 +8,7 @@ from pathlib import Path
 from crowdbot.core.realism.tracks import CorridorTracks, of_files, tracks_of
 from crowdbot.core.recording.recording import Recording
 from crowdbot.core.trajectories.bag.tables import people_topics
-from crowdbot.core.trajectories.data_sets.homography import AS_THEY_SAY, VideoScale
+from crowdbot.core.trajectories.data_sets.homography import AS_STATED, VideoScale
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.dsl.text.bounded_files import open_file
 from crowdbot.errors import InputError
@@ -25,7 +25,7 @@ _FORMATS = (
 )
 
 
-def read_tracks(path: Path, scale: VideoScale = AS_THEY_SAY) -> CorridorTracks:
+def read_tracks(path: Path, scale: VideoScale = AS_STATED) -> CorridorTracks:
     """Read tracks from a recording, a table of people, a ROS bag, or a data set's file.
 
     Args:

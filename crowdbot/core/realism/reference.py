@@ -16,7 +16,7 @@ from crowdbot.core.realism.model import CrowdModel, avoid_nobody, ghosts
 from crowdbot.core.realism.recordings import read_tracks
 from crowdbot.core.realism.statistics import Cell, Statistics, statistics_of
 from crowdbot.core.realism.tracks import CorridorTracks
-from crowdbot.core.trajectories.data_sets.homography import AS_THEY_SAY, VideoScale
+from crowdbot.core.trajectories.data_sets.homography import AS_STATED, VideoScale
 from crowdbot.errors import InputError
 
 SHIPPED = "recorded_corridors.json"
@@ -148,7 +148,7 @@ def reference_of(
     return reference
 
 
-def read_reference(files: Sequence[Path], scale: VideoScale = AS_THEY_SAY) -> RealismReference:
+def read_reference(files: Sequence[Path], scale: VideoScale = AS_STATED) -> RealismReference:
     """Read a reference from the user's files, in the formats of `read_tracks`.
 
     Args:

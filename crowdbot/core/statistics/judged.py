@@ -51,11 +51,11 @@ def judge(
         if not kept.any():
             continue
         last = int((own.last & kept).sum())
-        runs = f"{plural(last, 'run')} of {planner} without a value"
+        worst_of = f"{plural(last, 'run')} of {planner} without a value count as the worst"
         if gains.sum() <= 0.0:
-            reasons += [f"with {runs} as the worst it does not gain"] if last else []
+            reasons += [f"{worst_of}: no gain is left"] if last else []
             continue
-        reasons += [f"{runs} count as the worst"] if last else []
+        reasons += [worst_of] if last else []
         if not open_:
             p = p_value(gains, table.clusters.part(kept))
             return ComparisonVerdict(sign, p, "; ".join(reasons))

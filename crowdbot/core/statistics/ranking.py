@@ -32,7 +32,8 @@ SCORES: Mapping[Aspect, tuple[Name, ...]] = {
     "efficiency": (("safe_efficiency", "corrected"),),
     "acceptance": (("acceptance", "corrected"), ("intrusion", "rate")),
 }
-#: Largest loss in a score, in its unit, of a planner that is ahead by another one.
+#: Largest loss in a score, in its unit, of a planner that is ahead by another one. Rates of
+#: contacts and of intrusion have none: no loss of these is negligible in all crowds.
 MARGINS: Mapping[Name, float] = {
     ("safe_efficiency", "corrected"): 0.05,
     ("acceptance", "corrected"): 0.05,

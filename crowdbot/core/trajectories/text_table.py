@@ -108,7 +108,7 @@ def split(path: Path, text: str) -> TextTable:
         InputError: it is empty, or rows differ in length.
     """
     lines = _plain_viswalk(text.splitlines())
-    if lines and TOLD.fullmatch(lines[0]):
+    if lines and SEPARATOR_LINE.fullmatch(lines[0]):
         lines[0] = ""
     comments = [line for line in lines if line.lstrip().startswith(_COMMENTS)]
     first = next((line for line in lines if line.strip() and line not in comments), "")
@@ -259,8 +259,8 @@ _DOCUMENTS = {
     "{": "JSON", "[{": "JSON", "[[": "JSON", "<": "XML or HTML",
     "NO_OF_FRAMES": "Qualisys' export of markers", "Format Version,": "Motive's export of markers",
 }  # fmt: skip
-#: First line by which spreadsheets are told what is between cells.
-TOLD = re.compile(r'\s*"?sep=(.)"?\s*', re.IGNORECASE)
+#: First line that names the separator for spreadsheets.
+SEPARATOR_LINE = re.compile(r'\s*"?sep=(.)"?\s*', re.IGNORECASE)
 _STARTS = (
     "id", "persid", "personid", "ped_id", "pers", "person", "t", "time", "timestamp", *FRAMES,
 )  # fmt: skip

@@ -48,7 +48,7 @@ def test_deleting_bad_runs_gains_nothing(scales: dict[tuple[str, str], ScoreScal
     without = only(kept(whole, "a", *range(8)))
     assert without.difference.value == pytest.approx(0.05)
     assert without.verdict == "not distinguishable"
-    assert without.reason == "with 8 runs of a without a value as the worst it does not gain"
+    assert without.reason == "8 runs of a without a value count as the worst: no gain is left"
     assert without.counts_a.missing == 8
 
 

@@ -43,8 +43,8 @@ class VideoScale:
         return self.homography is not None or self.frame_rate is not None
 
 
-#: Tables say themselves how large a metre is, and how long a second.
-AS_THEY_SAY = VideoScale()
+#: Positions and times as the tables state them.
+AS_STATED = VideoScale()
 
 
 def video_scale(homography: str | None, frame_rate: float | None) -> VideoScale:
