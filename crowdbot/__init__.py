@@ -5,12 +5,6 @@ Names below are imported when they are first used, so that ``import crowdbot`` s
 
 from __future__ import annotations
 
-from crowdbot.lazy import lazy_names, stub_names
+from crowdbot.lazy import lazy_face
 
-_NAMES = stub_names(__file__)
-__all__ = sorted(_NAMES)
-__getattr__ = lazy_names(__name__, _NAMES)
-
-
-def __dir__() -> list[str]:
-    return __all__
+__all__, __getattr__, __dir__ = lazy_face(__name__, __file__)

@@ -28,6 +28,20 @@ def stub_names(file: str) -> Mapping[str, Home]:
     return {name: Home(module, original) for module, original, name in _IMPORT.findall(text)}
 
 
+def lazy_face(
+    package: str, file: str, *own: str
+) -> tuple[list[str], Callable[[str], Any], Callable[[], list[str]]]:
+    """Return a module's ``__all__``, ``__getattr__`` and ``__dir__`` for the names of its stub.
+
+    Args:
+        package, file: the module's ``__name__`` and ``__file__``.
+        own: public names that the module itself defines.
+    """
+    names = stub_names(file)
+    public = sorted([*names, *own])
+    return public, lazy_names(package, names), lambda: public
+
+
 def lazy_names(package: str, names: Mapping[str, Home]) -> Callable[[str], Any]:
     """Return a module's ``__getattr__`` that imports these names on first use."""
 

@@ -2,19 +2,6 @@
 
 from __future__ import annotations
 
-from crowdbot.core.geometry.valid_shape import valid_shape
-from crowdbot.core.support.strict_json import DEEPEST, parse_foreign_json
-from crowdbot.core.support.text_files import LARGEST_TABLE, input_bytes, input_text
-from crowdbot.dsl.text.plain_document import read_document
-from crowdbot.errors import SpecError
+from crowdbot.lazy import lazy_face
 
-__all__ = [
-    "DEEPEST",
-    "LARGEST_TABLE",
-    "SpecError",
-    "input_bytes",
-    "input_text",
-    "parse_foreign_json",
-    "read_document",
-    "valid_shape",
-]
+__all__, __getattr__, __dir__ = lazy_face(__name__, __file__)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from crowdbot.core.learning.build import Observer, Reward
-from crowdbot.core.learning.seen import LearningContext, RobotInputs, StepChange, sensor_named
+from crowdbot.lazy import lazy_face
 
-__all__ = ["LearningContext", "Observer", "Reward", "RobotInputs", "StepChange", "sensor_named"]
+__all__, __getattr__, __dir__ = lazy_face(__name__, __file__)

@@ -2,33 +2,6 @@
 
 from __future__ import annotations
 
-from crowdbot.core.sensing.body_model import BOTTOM, RADIUS, TOP, X, Y, trunk_radius
-from crowdbot.core.sensing.depth_mm import depth_mm
-from crowdbot.core.sensing.depth_renderer import MOST_MILLIMETRES, DepthRenderer
-from crowdbot.core.sensing.ray_grid import FAR, HIGH, LOW, NEAR, GridArrays, Obstacles, RayGrid
-from crowdbot.core.sensing.raycast_columns import fill_columns, heights_of, meet
-from crowdbot.core.sensing.raycast_tilted import NO_RAYS, grid_rays
+from crowdbot.lazy import lazy_face
 
-__all__ = [
-    "BOTTOM",
-    "FAR",
-    "HIGH",
-    "LOW",
-    "MOST_MILLIMETRES",
-    "NEAR",
-    "NO_RAYS",
-    "RADIUS",
-    "TOP",
-    "DepthRenderer",
-    "GridArrays",
-    "Obstacles",
-    "RayGrid",
-    "X",
-    "Y",
-    "depth_mm",
-    "fill_columns",
-    "grid_rays",
-    "heights_of",
-    "meet",
-    "trunk_radius",
-]
+__all__, __getattr__, __dir__ = lazy_face(__name__, __file__)

@@ -11,7 +11,7 @@
 
 from __future__ import annotations
 
-from crowdbot.lazy import lazy_names, stub_names
+from crowdbot.lazy import lazy_face
 from crowdbot.rl.libraries import gym
 
 #: Name of the environment in Gymnasium.
@@ -25,6 +25,4 @@ if gym is not None and NAV not in gym.registry:
         order_enforce=True,
     )
 
-_NAMES = stub_names(__file__)
-__all__ = ["NAV", *_NAMES]
-__getattr__ = lazy_names(__name__, _NAMES)
+__all__, __getattr__, __dir__ = lazy_face(__name__, __file__, "NAV")

@@ -1,0 +1,57 @@
+"""Names of this module, and where they come from: for type checkers, and to import them."""
+
+__all__: list[str]
+
+from crowdbot.core.trajectories.demanded_evasion import MOST as MOST
+from crowdbot.core.trajectories.demanded_evasion import demanded_evasion as demanded_evasion
+from crowdbot.core.trajectories.demanded_evasion import robot_approach as robot_approach
+from crowdbot.core.trajectories.disc_around_robot import as_disc as as_disc
+from crowdbot.core.trajectories.dynamic_time_warping import least_warping as least_warping
+from crowdbot.core.trajectories.dynamic_time_warping import spaced as spaced
+from crowdbot.core.trajectories.encounters import approach as approach
+from crowdbot.core.trajectories.encounters import contact_events as contact_events
+from crowdbot.core.trajectories.encounters import contact_runs as contact_runs
+from crowdbot.core.trajectories.encounters import encounter as encounter
+from crowdbot.core.trajectories.encounters import people as people
+from crowdbot.core.trajectories.encounters import people_speeds as people_speeds
+from crowdbot.core.trajectories.encounters import people_velocities as people_velocities
+from crowdbot.core.trajectories.encounters import relative_velocity as relative_velocity
+from crowdbot.core.trajectories.encounters import robot_of as robot_of
+from crowdbot.core.trajectories.encounters import robot_velocities as robot_velocities
+from crowdbot.core.trajectories.encounters import touching as touching
+from crowdbot.core.trajectories.evasion import Evasion as Evasion
+from crowdbot.core.trajectories.evasion import evasion as evasion
+from crowdbot.core.trajectories.evasion import ghost_run as ghost_run
+from crowdbot.core.trajectories.evasion import own_legs as own_legs
+from crowdbot.core.trajectories.fault.at_fault import at_fault as at_fault
+from crowdbot.core.trajectories.fault.braking import FaultRule as FaultRule
+from crowdbot.core.trajectories.fault.driven_aside import driven_aside as driven_aside
+from crowdbot.core.trajectories.footprint_of_run import footprint_of as footprint_of
+from crowdbot.core.trajectories.headway import share_below as share_below
+from crowdbot.core.trajectories.paired_people import Effects as Effects
+from crowdbot.core.trajectories.paired_people import Pairing as Pairing
+from crowdbot.core.trajectories.paired_people import meeting_effects as meeting_effects
+from crowdbot.core.trajectories.paired_people import whole_effects as whole_effects
+from crowdbot.core.trajectories.person_contacts import PersonContacts as PersonContacts
+from crowdbot.core.trajectories.person_contacts import person_contacts as person_contacts
+from crowdbot.core.trajectories.person_track import PersonStance as PersonStance
+from crowdbot.core.trajectories.person_track import person_stance as person_stance
+from crowdbot.core.trajectories.preprocess import heading_changes as heading_changes
+from crowdbot.core.trajectories.preprocess import inf_to_nan as inf_to_nan
+from crowdbot.core.trajectories.preprocess import present as present
+from crowdbot.core.trajectories.preprocess import samples_of_shorter as samples_of_shorter
+from crowdbot.core.trajectories.preprocess import truncate_to_shorter as truncate_to_shorter
+from crowdbot.core.trajectories.preprocess import valid_agent_steps as valid_agent_steps
+from crowdbot.core.trajectories.preprocess import valid_robot_steps as valid_robot_steps
+from crowdbot.core.trajectories.preprocess import wrap as wrap
+from crowdbot.core.trajectories.questionnaires import TLX_SCALES as TLX_SCALES
+from crowdbot.core.trajectories.questionnaires import USE_ITEMS as USE_ITEMS
+from crowdbot.core.trajectories.questionnaires import Answer as Answer
+from crowdbot.core.trajectories.trips import DISTANCE_TOLERANCE as DISTANCE_TOLERANCE
+from crowdbot.core.trajectories.trips import Durations as Durations
+from crowdbot.core.trajectories.trips import MeanPace as MeanPace
+from crowdbot.core.trajectories.trips import displacement as displacement
+from crowdbot.core.trajectories.trips import durations as durations
+from crowdbot.core.trajectories.trips import mean_pace as mean_pace
+from crowdbot.core.trajectories.trips import meets_robot as meets_robot
+from crowdbot.core.trajectories.trips import walked_distances as walked_distances
