@@ -101,8 +101,8 @@ _NOT_READ = (
     "environment: {{kind: floor_plan, file: plan.wkt}}"
 )
 _TRACKS = (
-    "trajectories of people are read by Trajectories.from_csv or from_eth_ucy, and by crowdbot "
-    "realism --reference {}; to walk as recorded, they are a CSV t,id,x,y"
+    "recorded people are a table whose header names t (or frame), id, x and y, TrajNet++ "
+    "(.ndjson), or rows of ETH, UCY, PeTrack or JuPedSim (.txt, .vsp)"
 )
 #: A tag of files other than scenes, or their ending; what reads them, or what to do.
 _ELSEWHERE = (
@@ -125,7 +125,7 @@ _ELSEWHERE = (
     *((tag, f"XML of JuPedSim before 1.0 {_NOT_READ}")
       for tag in ("geometry", "JuPedSim", "routing")),
     *((tag, f"SUMO's XML {_NOT_READ}") for tag in ("routes", "net", "additional")),
-    *((ending, _TRACKS) for ending in (".vsp", ".txt", ".tsv", ".ndjson", ".csv")),
+    *((ending, _TRACKS) for ending in (".txt", ".tsv", ".csv")),
 )  # fmt: skip
 
 

@@ -15,6 +15,8 @@ from crowdbot.errors import SpecError
 
 _DATA = (".json", ".yaml", ".yml", ".scenario")
 _XML = (".xml", ".svg")
+#: TrajNet++ has a text of JSON on each line.
+_LINES_OF_DATA = ".ndjson"
 #: Most characters of JSON and YAML.
 _LARGEST_DATA = 8_000_000
 
@@ -63,7 +65,7 @@ def open_file_of_others(path: Path, report: Report) -> OpenedScene:
         for mark, note in odd:
             report.odd(mark, note)
         return OpenedScene(path, source, text, "xml", roots)
-    if start == "{" or ending in _DATA:
+    if (start == "{" and ending != _LINES_OF_DATA) or ending in _DATA:
         if len(text) > _LARGEST_DATA:
             message = f"is larger than {_LARGEST_DATA // 10**6} MB, which JSON and YAML may have"
             raise SpecError([Diagnostic("E401", message, Mark(source))])

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from typing import NoReturn
 
 import numpy as np
 
@@ -16,31 +17,29 @@ from crowdbot.core.exchange.rows import Row, RowTable
 from crowdbot.core.exchange.scene import Draft, around, id_of
 from crowdbot.core.exchange.trial.replays import HEADER
 from crowdbot.core.trajectories.data_sets.homography import VideoScale, projected
-from crowdbot.core.trajectories.raw_table import as_number
-from crowdbot.core.trajectories.table_columns.names import FRAMES, USUAL_NAMES
-from crowdbot.core.trajectories.table_columns.units import unit_of, without_unit
-from crowdbot.core.trajectories.text_table import SEPARATOR_LINE
+from crowdbot.core.trajectories.data_sets.people_files import holds_people, people_run, people_table
+from crowdbot.core.trajectories.raw_table import Ids, RawTable, as_number
+from crowdbot.core.trajectories.table_columns.units import without_unit
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark
 from crowdbot.errors import SpecError
 
-_NAMES = {
-    "t": ("t", *(name for name in USUAL_NAMES["t"] if name not in FRAMES)),
-    "frame": FRAMES,
-    **{name: (name, *USUAL_NAMES[name]) for name in ("id", "x", "y")},
-    "entity": ("entity", "type", "kind"),
-}
 #: Columns that follow from the places.
 _FOLLOWING = {"yaw", "heading", "theta", "angle", "orientation", "vx", "vy", "vel_x", "vel_y",
               "velocity_x", "velocity_y", "speed"}  # fmt: skip
-#: Columns of a file without a header: UMANS' time, place and viewing direction of one agent.
-_BARE = {"t": 0, "x": 1, "y": 2}
+_HEIGHT = {"z": "people walk on one floor"}
+#: First columns of a file without a header: UMANS' time and place of one agent.
+_BARE = ("t", "x", "y")
+#: Later first times are those of a clock, not of a run, s.
+_LATE = 3600.0
+#: t (s), x and y (m).
+Sample = tuple[float, float, float]
 _NUMBERED = re.compile(r"(\d{1,9})$")
 RECORDING = RowTable(
     "CSV with a header",
     (
         Row("time or frame, id, x, y", "crowd.policy replay.file"),
         Row("yaw, vx, vy and the like", "", "they follow from the places"),
-        Row("entity robot", "", "a planner drives the robot here"),
+        Row("id or entity robot", "", "a planner drives the robot here"),
     ),
 )
 WRITTEN = RowTable(
@@ -57,10 +56,14 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
 
     Raises:
         SpecError: E402, a cell is not a number, or two files have the same person.
+        InputError: a table of people cannot be read; the message has its line.
     """
-    people: dict[int, list[tuple[float, float, float]]] = {}
+    people: dict[int, list[Sample]] = {}
     for file in files:
-        for ident, points in _people(file, context.report, context.scale).items():
+        bare = _is_bare(file)
+        for ident, points in (
+            _written(file, context) if bare else _recorded(file, context)
+        ).items():
             if ident in people:
                 raise SpecError([Diagnostic("E402", f"person {ident} is in two files", file.top)])
             people[ident] = points
@@ -69,6 +72,7 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     scene = Draft(id_of(files[0].path.stem))
     table = f"{context.name}.recorded.csv"
     rows = [(t, ident, x, y) for ident, points in people.items() for t, x, y in points]
+    rows = _from_zero(rows, context.report, files[0])
     scene.tables[table] = HEADER + "".join(
         f"{t!r},{i},{x!r},{y!r}\n" for t, i, x, y in sorted(rows)
     )
@@ -80,54 +84,107 @@ def read(files: Sequence[OpenedScene], context: Context) -> list[Draft]:
     return [scene]
 
 
-def _people(
-    file: OpenedScene, report: Report, scale: VideoScale
-) -> dict[int, list[tuple[float, float, float]]]:
+def _from_zero(
+    rows: list[tuple[float, int, float, float]], report: Report, file: OpenedScene
+) -> list[tuple[float, int, float, float]]:
+    """Return rows whose times count from the first where the clock is none of a run's."""
+    first = min(row[0] for row in rows)
+    if 0.0 <= first <= _LATE:
+        return rows
+    note = f"times are counted from the first, {first:.10g} s"
+    report.interpreted(Item("t", file.top), RECORDING.rows[0].ours, note)
+    return [(t - first, ident, x, y) for t, ident, x, y in rows]
+
+
+def _recorded(file: OpenedScene, context: Context) -> dict[int, list[Sample]]:
+    """Return the people of a table that names its columns, or of a data set."""
+    table = people_table(file.path, context.scale)
+    run = people_run(table, table.notes)
+    assert run.agents is not None
+    whole = Item(RECORDING.element, Mark(file.source))
+    context.report.carried(whole, RECORDING.rows[0].ours)
+    _record_unused(file, whole, table, context.report)
+    found = {}
+    for n, ident in enumerate(run.agents.id.tolist()):
+        x, y = run.agents.x[:, n], run.agents.y[:, n]
+        there = np.isfinite(x) & np.isfinite(y)
+        points = np.column_stack([run.t[there], x[there], y[there]]).tolist()
+        if len(points) > 1:
+            found[ident] = [(t, x, y) for t, x, y in points]
+            continue
+        line = _first_line(table, ident)
+        person = whole.add(Item(f"person {ident}", Mark(file.source, line)))
+        context.report.left_out(person, "it has one line only: recorded people need two")
+    return found
+
+
+def _first_line(table: RawTable, ident: int) -> int:
+    """Return the first line of a person, from 0."""
+    row = int(np.argmax(Ids(table).rows == ident))
+    return table.lines[row] - 1 if len(table.lines) else 0
+
+
+def _record_unused(file: OpenedScene, whole: Item, table: RawTable, report: Report) -> None:
+    """Record the columns that are not read, at the line that names them."""
     lines = file.text.split("\n")
-    top = _top(lines)
-    between = _separator(lines[top])
-    head = lines[top].split(between)
-    columns = _columns(head)
-    bare = not columns
-    if columns and "t" not in columns and scale.frame_rate is None:
-        mark = Mark(file.source, top, 0, max(1, len(lines[top])))
-        message = "its times are numbers of frames; --frame-rate says how many a second has"
-        raise SpecError([Diagnostic("E402", message, mark)])
+    wanted = [name for name in table.header if name]
+    top = next((n for n, line in enumerate(lines) if all(c in line for c in wanted)), 0)
+    column = 0
+    for name in table.header:
+        column = max(column, lines[top].find(name, column))
+        if name in table.unused:
+            known = without_unit(name).lower()
+            mark = Mark(file.source, top, column, max(1, len(name)))
+            item = whole.add(Item(name or "column without a name", mark))
+            notes = dict.fromkeys(_FOLLOWING, RECORDING.rows[1].note)
+            report.left_out(item, (notes | _HEIGHT).get(known, UNKNOWN))
+        column += len(name)
+
+
+def _written(file: OpenedScene, context: Context) -> dict[int, list[Sample]]:
+    """Return the person whose times and places a program has written without a header."""
+    if context.scale.frame_rate is not None:
+        raise SpecError([Diagnostic("E402", "its times are seconds: no --frame-rate", file.top)])
     number = _NUMBERED.search(file.path.stem)
-    names = _names([line.split(between) for line in lines[top + 1 :]], columns)
-    units = {name: unit_of(name, head[at].strip().strip('"'), 1.0) for name, at in columns.items()}
-    found: dict[int, list[tuple[float, float, float]]] = {}
-    robots: list[_Row] = []
-    marks: dict[int, Mark] = {}
-    for at in range(top if bare else top + 1, len(lines)):
-        if _is_empty(lines[at]):
-            continue
-        row = _Row(file, at, lines[at].split(between), columns or _BARE, units)
-        if not bare and "entity" in columns and row.text("entity").lower().startswith("robot"):
-            robots.append(row)
-            continue
-        row.end(len(head))
-        ident = int(number[1]) if bare and number else row.person(names) if not bare else 0
-        point = (row.time(scale.frame_rate), row.number("x"), row.number("y"))
-        points = found.setdefault(ident, [])
-        marks.setdefault(ident, row.mark)
+    lines = [(at, line) for at, line in enumerate(file.text.split("\n")) if not _is_empty(line)]
+    between = _separator(lines[0][1])
+    width = len(lines[0][1].split(between))
+    points: list[Sample] = []
+    for at, line in lines:
+        point = _sample(file, at, line.split(between), width)
         if points and point[0] <= points[-1][0]:
-            row.refuse("the times of a person have to rise")
+            _refuse(file, at, "the times of a person have to rise")
         points.append(point)
-    whole = _record(file, report, head, bare, top)
-    if robots:
-        report.left_out(whole.add(Item("robot", robots[0].mark)), RECORDING.rows[2].note)
-    for ident in (ident for ident, points in found.items() if len(points) == 1):
-        person = whole.add(Item(f"person {ident}", marks[ident]))
-        report.left_out(person, "it has one line only: recorded people need two")
-    return {
-        ident: _in_metres(file, points, scale) for ident, points in found.items() if len(points) > 1
-    }
+    whole = Item(WRITTEN.element, Mark(file.source))
+    context.report.carried(whole, WRITTEN.rows[0].ours)
+    for at in range(len(_BARE), width):
+        item = whole.add(Item(f"column {at + 1}", Mark(file.source, lines[0][0])))
+        context.report.left_out(item, WRITTEN.rows[1].note)
+    return {int(number[1]) if number else 0: _in_metres(file, points, context.scale)}
 
 
-def _in_metres(
-    file: OpenedScene, points: list[tuple[float, float, float]], scale: VideoScale
-) -> list[tuple[float, float, float]]:
+def _sample(file: OpenedScene, at: int, cells: Sequence[str], width: int) -> Sample:
+    """Return t, x and y of a line."""
+    if len(cells) != width:
+        _refuse(file, at, f"{len(cells)} cells, and the first line has {width}")
+    found = []
+    for name, cell in zip(_BARE, cells, strict=False):
+        try:
+            value = as_number(cell.strip().strip('"'))
+        except ValueError:
+            value = math.nan
+        if not abs(value) <= LARGEST:
+            _refuse(file, at, f"{name} is {cell.strip()[:40]!r}, and has to be a finite number")
+        found.append(value)
+    return found[0], found[1], found[2]
+
+
+def _refuse(file: OpenedScene, line: int, message: str) -> NoReturn:
+    """Raise a SpecError at a line."""
+    raise SpecError([Diagnostic("E402", message, Mark(file.source, line))])
+
+
+def _in_metres(file: OpenedScene, points: list[Sample], scale: VideoScale) -> list[Sample]:
     """Return points (t, x, y) with x and y in metres."""
     if scale.homography is None:
         return points
@@ -136,27 +193,9 @@ def _in_metres(
     return [(t, x, y) for t, x, y in rows.tolist()]
 
 
-def _names(rows: Sequence[Sequence[str]], columns: Mapping[str, int]) -> dict[str, int]:
-    """Return name -> number of people, in order of appearance; empty if all ids are numbers."""
-    at = columns.get("id", 0)
-    found = dict.fromkeys(row[at].strip().strip('"') for row in rows if len(row) > at)
-    if not columns or not any(c.isalpha() for name in found for c in name):
-        return {}
-    return {name: number for number, name in enumerate(found)}
-
-
 def _is_empty(line: str) -> bool:
-    """Return True for a line without cells: blank, a comment, or a spreadsheet's ``sep=;``."""
-    return (
-        not line.strip()
-        or line.lstrip().startswith("#")
-        or SEPARATOR_LINE.fullmatch(line) is not None
-    )
-
-
-def _top(lines: Sequence[str]) -> int:
-    """Return the number of the first line with cells; 0 if there is none."""
-    return next((at for at, line in enumerate(lines) if not _is_empty(line)), 0)
+    """Return True for a line without cells: blank, or a comment."""
+    return not line.strip() or line.lstrip().startswith("#")
 
 
 def _separator(line: str) -> str | None:
@@ -164,106 +203,21 @@ def _separator(line: str) -> str | None:
     return next((mark for mark in "\t;," if mark in line), None)
 
 
-def _columns(head: Sequence[str]) -> dict[str, int]:
-    """Return our name -> column of a header; empty without a header."""
-    names = [without_unit(cell.strip().strip('"')).lower() for cell in head]
-    found = {
-        ours: names.index(theirs)
-        for ours, known in _NAMES.items()
-        for theirs in known[::-1]
-        if theirs in names
-    }
-    timed = "t" in found or "frame" in found
-    return found if timed and {"id", "x", "y"} <= set(found) else {}
+def _is_bare(file: OpenedScene) -> bool:
+    """Return True for rows of three or five numbers without names.
 
-
-def _record(file: OpenedScene, report: Report, head: Sequence[str], bare: bool, top: int) -> Item:
-    """Record the columns of a file; return an item that represents the file."""
-    table = WRITTEN if bare else RECORDING
-    whole = Item(table.element, Mark(file.source))
-    report.carried(whole, table.rows[0].ours)
-    used = set((_columns(head) or _BARE).values())
-    column = 0
-    for at, cell in enumerate(head):
-        name = cell.strip().strip('"') or f"column {at + 1}"
-        if at not in used:
-            mark = Mark(file.source, top, column, max(1, len(cell)))
-            known = bare or without_unit(name).lower() in _FOLLOWING
-            other = whole.add(Item(f"column {at + 1}" if bare else name, mark))
-            report.left_out(other, table.rows[1].note if known else UNKNOWN)
-        column += len(cell) + 1
-    return whole
-
-
-class _Row:
-    """One line of a table; errors in its cells name their position."""
-
-    def __init__(
-        self, file: OpenedScene, line: int, cells: Sequence[str], columns: dict[str, int],
-        units: Mapping[str, float],
-    ) -> None:  # fmt: skip
-        self._file, self._line, self._cells, self._columns = file, line, cells, columns
-        self._units = units
-
-    def text(self, name: str) -> str:
-        """Return a cell as text."""
-        at = self._columns[name]
-        if at >= len(self._cells):
-            self.refuse(f"there is no column {at + 1} ({name})")
-        return self._cells[at].strip().strip('"')
-
-    def number(self, name: str) -> float:
-        """Return a cell as a finite number."""
-        try:
-            value = as_number(self.text(name))
-        except ValueError:
-            value = math.nan
-        if not abs(value) <= LARGEST:
-            self.refuse(f"{name} is {self.text(name)[:40]!r}, and has to be a finite number")
-        return value * self._units.get(name, 1.0)
-
-    def time(self, frame_rate: float | None) -> float:
-        """Return its time, s."""
-        value = self.number("t" if "t" in self._columns else "frame")
-        return value if frame_rate is None else value / frame_rate
-
-    def person(self, names: Mapping[str, int]) -> int:
-        """Return the number of its person, from names if people have some."""
-        return names[self.text("id")] if names else self.whole("id")
-
-    def whole(self, name: str) -> int:
-        """Return a cell as a whole number that is not negative."""
-        value = self.number(name)
-        if value != int(value) or value < 0:
-            self.refuse(f"{name} is {self.text(name)[:40]!r}, and has to be a whole number")
-        return int(value)
-
-    @property
-    def mark(self) -> Mark:
-        """Return its position in the file."""
-        return Mark(self._file.source, self._line)
-
-    def end(self, columns: int) -> None:
-        """Refuse cells that the first line has no column for."""
-        if any(cell.strip() for cell in self._cells[columns:]):
-            self.refuse(f"{len(self._cells)} cells, and the first line has {columns}")
-
-    def refuse(self, message: str) -> None:
-        """Raise a SpecError at this line."""
-        raise SpecError([Diagnostic("E402", message, self.mark)])
-
-
-def _is_recording(file: OpenedScene) -> bool:
-    if file.kind != "text":
-        return False
-    lines = file.text.split("\n")
-    first = lines[_top(lines)]
+    Four numbers are a frame, a person and a place in other files.
+    """
+    first = next((line for line in file.text.split("\n") if not _is_empty(line)), "")
     between = _separator(first)
     cells = [cell.strip() for cell in first.split(between)]
     numbers = all(re.fullmatch(r"[-+0-9.eE]+", cell) for cell in cells)
-    # Four numbers are a frame, a person and a place in other files.
-    bare = numbers and len(cells) in (3, 5) and between is not None
-    return bool(_columns(cells)) or bare
+    commented = any(line.lstrip().startswith("#") for line in file.text.split("\n", 5)[:5])
+    return numbers and len(cells) in (3, 5) and between is not None and not commented
+
+
+def _is_recording(file: OpenedScene) -> bool:
+    return file.kind == "text" and (_is_bare(file) or holds_people(file.path, file.text))
 
 
 RECORDINGS = SceneFormat(
@@ -272,5 +226,5 @@ RECORDINGS = SceneFormat(
     _is_recording,
     read,
     (RECORDING, WRITTEN),
-    "robots and walls",
+    "walls",
 )

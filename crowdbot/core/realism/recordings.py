@@ -9,6 +9,8 @@ from crowdbot.core.realism.tracks import CorridorTracks, of_files, tracks_of
 from crowdbot.core.recording.recording import Recording
 from crowdbot.core.trajectories.bag.tables import people_topics
 from crowdbot.core.trajectories.data_sets.homography import AS_STATED, VideoScale
+from crowdbot.core.trajectories.data_sets.people_files import ENDINGS, people_run, people_table
+from crowdbot.core.trajectories.table_columns.completed import sentences
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.dsl.text.bounded_files import open_file
 from crowdbot.errors import InputError
@@ -36,11 +38,11 @@ def read_tracks(path: Path, scale: VideoScale = AS_STATED) -> CorridorTracks:
         InputError: it cannot be read, or is of another format.
         UnknownNameError: a bag has no such topic.
     """
-    table = _TABLES.get(path.suffix.lower())
-    if scale and table is None and (path.exists() or _TOPIC in str(path)):
+    table = path.suffix.lower() in ENDINGS
+    if scale and not table and (path.exists() or _TOPIC in str(path)):
         raise InputError(
             f"{path}: has metres and seconds; a homography and a frame rate are for tables and "
-            f"data sets ({', '.join(_TABLES)})"
+            f"data sets ({', '.join(ENDINGS)})"
         )
     if not path.exists() and _TOPIC in str(path):
         bag, _, topic = str(path).partition(_TOPIC)
@@ -51,8 +53,9 @@ def read_tracks(path: Path, scale: VideoScale = AS_STATED) -> CorridorTracks:
         if (path / "metadata.yaml").is_file():
             return tracks_of(_bag(path), str(path))
         raise InputError(f"{path}: a folder, but not a bag of ROS: it has no metadata.yaml")
-    if table is not None:
-        return tracks_of(table(path, scale), str(path))
+    if table:
+        people = people_table(path, scale)
+        return tracks_of(people_run(people, sentences(people)), str(path))
     reader = _READERS.get(path.suffix.lower())
     if reader is None:
         raise InputError(f"{path}: not {_FORMATS}")
@@ -109,27 +112,6 @@ def _origin(path: Path) -> tuple[str, str]:
     return found[0], found[1]
 
 
-def _table(path: Path, scale: VideoScale) -> Trajectories:
-    return Trajectories.from_csv(
-        agents=path, agent_radius=0.0, frame_rate=scale.frame_rate, homography=scale.homography
-    )
-
-
-def _data_set(path: Path, scale: VideoScale) -> Trajectories:
-    return Trajectories.from_eth_ucy(path, frame_rate=scale.frame_rate, homography=scale.homography)
-
-
-def _trajnet(path: Path, scale: VideoScale) -> Trajectories:
-    return Trajectories.from_trajnet(path, frame_rate=scale.frame_rate, homography=scale.homography)
-
-
-_TABLES: Mapping[str, Callable[[Path, VideoScale], Trajectories]] = {
-    ".csv": _table,
-    ".tsv": _table,
-    ".ndjson": _trajnet,
-    ".txt": _data_set,
-    ".vsp": _data_set,
-}
 _READERS: Mapping[str, Callable[[Path], Trajectories]] = {
     ".mcap": _recording,
     **dict.fromkeys(_BAGS, _bag),

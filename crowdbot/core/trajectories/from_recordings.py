@@ -27,8 +27,10 @@ from crowdbot.core.trajectories.recording_options import (
     TopicOptions,
     takes,
 )
+from crowdbot.core.trajectories.table_columns.completed import sentences
 from crowdbot.core.trajectories.table_columns.frame_table import frame_table
 from crowdbot.core.trajectories.table_columns.frames import in_seconds
+from crowdbot.core.trajectories.table_columns.robots import without_robots
 from crowdbot.core.trajectories.text_table import read_table
 from crowdbot.errors import InputError, RecordingWarning
 
@@ -118,6 +120,8 @@ class FromRecordings:
             for n, p in files.items()
             if p is not None
         }
+        if "agents" in tables:
+            tables["agents"] = without_robots(tables["agents"])
         placed = {name: in_metres(table, homography) for name, table in tables.items()}
         return _made(cls, in_seconds(placed, frame_rate), options, contacts=as_columns)
 
@@ -158,6 +162,8 @@ class FromRecordings:
             for n, f in frames.items()
             if f is not None
         }
+        if "agents" in tables:
+            tables["agents"] = without_robots(tables["agents"])
         return _made(cls, in_seconds(tables, frame_rate), options)
 
     @classmethod
@@ -361,7 +367,7 @@ def _made(
         raise InputError("a robot needs robot_radius (m) and robot_mass (kg), which tables lack")
     arrays = {"contacts": contacts, **given, **columns, "robot_goal_time": arrived}
     run: _Run = cast(Any, cls).from_arrays(**arrays)
-    notes = (note for table in tables.values() if table is not None for note in table.notes)
+    notes = (note for table in tables.values() if table is not None for note in sentences(table))
     for text in (*notes, *run.implausible()):
         warnings.warn(text, RecordingWarning, stacklevel=4)
     return run

@@ -36,6 +36,8 @@ class RawTable:
         frame_rate: frames per second that the file states; None if it does not.
         counts_frames: True if its column of times is called one of frames.
         notes: sentences on what is not read, or not as it stands.
+        unused: names of the columns that are not read.
+        kinds: what each row is, such as ``robot``, where a column says so; else empty.
     """
 
     name: str
@@ -45,6 +47,8 @@ class RawTable:
     frame_rate: float | None = None
     counts_frames: bool = False
     notes: Sequence[str] = ()
+    unused: Sequence[str] = ()
+    kinds: Cells = ()
 
     def __contains__(self, column: str) -> bool:
         return column in self.columns

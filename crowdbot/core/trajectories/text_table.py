@@ -29,7 +29,7 @@ from crowdbot.core.trajectories.table_columns.units import (
 from crowdbot.errors import InputError
 
 #: A row of text is a comment if it begins with one of these.
-_COMMENTS = ("#", "%", "//")
+COMMENTS = ("#", "%", "//")
 _RATE = re.compile(
     r"frame[\s_-]*rate\s*[:=]?\s*(\d+(?:[.,]\d+)?)|\bfps\s*[:=]\s*(\d+(?:[.,]\d+)?)"
     r"|(\d+(?:[.,]\d+)?)\s*fps\b",
@@ -110,7 +110,7 @@ def split(path: Path, text: str) -> TextTable:
     lines = _plain_viswalk(text.splitlines())
     if lines and SEPARATOR_LINE.fullmatch(lines[0]):
         lines[0] = ""
-    comments = [line for line in lines if line.lstrip().startswith(_COMMENTS)]
+    comments = [line for line in lines if line.lstrip().startswith(COMMENTS)]
     first = next((line for line in lines if line.strip() and line not in comments), "")
     if not first:
         raise InputError(f"{path}:1: the file is empty")
@@ -125,7 +125,7 @@ def split(path: Path, text: str) -> TextTable:
                 f"{path}: is {other}, not a table of rows; convert it to CSV with t,id,x,y"
             )
     mark = _separator(first)
-    plain = "\n".join("" if line.lstrip().startswith(_COMMENTS) else line for line in lines)
+    plain = "\n".join("" if line.lstrip().startswith(COMMENTS) else line for line in lines)
     rows, numbers = _rows(path, plain, mark)
     has_header = not any(_is_number(cell) for cell in rows[0])
     if has_header:
@@ -317,6 +317,11 @@ def _rows(path: Path, text: str, mark: str) -> tuple[list[list[str]], list[int]]
         width = width or len(row)
         if len(row) < width:
             raise InputError(f"{path}:{line}: the row is too short: {len(row)} cells of {width}")
+        if any(cell.strip() for cell in row[width:]):
+            raise InputError(
+                f"{path}:{line}: {len(row)} cells, and the first row has {width}: a separator "
+                "that is also a decimal comma, or a header that lacks a name?"
+            )
         rows.append(row)
         lines.append(line)
     if not rows:

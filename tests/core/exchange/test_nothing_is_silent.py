@@ -12,7 +12,7 @@ import pytest
 import yaml
 
 from crowdbot.core.exchange.report import Report
-from crowdbot.errors import SpecError
+from crowdbot.errors import InputError, SpecError
 from tests.core.exchange.importing import FILES, imported
 
 _ELEMENT = re.compile(r"<([A-Za-z]\w*)((?:\s+[\w:]+=\"[^\"]*\")*)\s*(/?)>")
@@ -89,7 +89,7 @@ def test_in_a_recording(tmp_path: Path) -> None:
     assert _places(report)["mood"] == (0, 16)
     assert _places(report)["person 2"] == (3, 0)
     file.write_text(head + rows.replace(",b", ",b,more"))
-    with pytest.raises(SpecError, match=r"walk.csv:3:1: .*7 cells, and the first line has 6"):
+    with pytest.raises(InputError, match=r"walk.csv:3: 7 cells, and the first row has 6"):
         imported(file)
 
 

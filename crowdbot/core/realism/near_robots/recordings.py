@@ -17,6 +17,7 @@ from crowdbot.core.realism.tracks import of_files
 from crowdbot.core.recording.recording import Recording
 from crowdbot.core.trajectories.own_recordings import columns_of
 from crowdbot.core.trajectories.raw_table import RawTable
+from crowdbot.core.trajectories.table_columns.frames import in_seconds
 from crowdbot.core.trajectories.text_table import read_table
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError
@@ -79,6 +80,7 @@ def _table(path: Path) -> Clip:
     """
     table = read_table(path, {}, _COLUMNS)
     table.require("agents", "t", "id", "x", "y")
+    table = in_seconds({"agents": table}, None)["agents"]
     mine = np.array([str(cell).strip() == ROBOT_ID for cell in table.columns["id"]], np.bool_)
     if not mine.any() or mine.all():
         missing = f"row of id '{ROBOT_ID}'" if not mine.any() else "row of a person"

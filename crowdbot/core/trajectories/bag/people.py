@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Container, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ from typing import Any
 from crowdbot.core.trajectories.bag.columns import BodyRow
 from crowdbot.core.trajectories.bag.fields import header_of, linear_of, place_of
 from crowdbot.core.trajectories.bag.markers import DELETED, is_marker, shapes
+from crowdbot.core.trajectories.table_columns.robots import is_robot
 from crowdbot.errors import InputError
 
 #: Fields that may hold the list of people, in the order they are tried.
@@ -32,7 +32,6 @@ _CLASSES = {
     5: "bike", 6: "car", 7: "truck", 8: "motorcycle", 9: "other vehicle", 10: "barrier",
     11: "sign",
 }  # fmt: skip
-_ROBOT = re.compile(r"(?<![a-z])robot(?!ic)", re.IGNORECASE)  # robot_1, no robotics student
 
 
 def people_in(path: Path, topic: str, message: Any, log: int, number: int) -> list[BodyRow]:
@@ -49,7 +48,7 @@ def people_in(path: Path, topic: str, message: Any, log: int, number: int) -> li
     """
     found = list(_rows(path, topic, message, log, number))
     for row in found:
-        if row.role != DELETED and any(_ROBOT.search(label) for label in row.labels.values()):
+        if row.role != DELETED and any(map(is_robot, row.labels.values())):
             row.role = "robot"
     return found
 

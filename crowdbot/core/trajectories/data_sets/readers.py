@@ -15,7 +15,6 @@ from crowdbot.core.trajectories.data_sets.homography import Homography, matrix_o
 from crowdbot.core.trajectories.data_sets.splines import is_spline_file, spline_table
 from crowdbot.core.trajectories.plausibility.times import CREEPING
 from crowdbot.core.trajectories.raw_table import RawTable
-from crowdbot.core.trajectories.table_columns.completed import not_used
 from crowdbot.core.trajectories.table_columns.frames import refuse_exchanged, whole_numbers
 from crowdbot.core.trajectories.table_columns.names import FRAMES
 from crowdbot.core.trajectories.table_columns.units import unit_in, without_unit
@@ -28,6 +27,8 @@ _OBSMAT = ("frame", "id", "x", "z", "y", "vx", "vz", "vy")
 #: Median of what people move by in a second from which positions are hardly metres.
 _PIXELS = 10.0
 _PLAIN = ("frame", "id", "x", "y")
+#: Numbers of columns of tables whose columns nothing names.
+WIDTHS = (len(_PLAIN), len(_OBSMAT))
 #: Columns of data sets that hold boxes, and where a person stands in one seen from aside.
 _SDD = "id, xmin, ymin, xmax, ymax, frame, lost, occluded, generated, label"
 _MOT = "frame, id, left, top, width, height, confidence, and three more"
@@ -107,7 +108,7 @@ def eth_ucy_table(
     assumed = found.assumed
     if not {"frame", "id", "x", "y"} <= set(names):
         assumed = True
-        if found.header or width not in (4, 8):
+        if found.header or width not in WIDTHS:
             seen = f"columns {', '.join(found.header)}" if found.header else f"{width} columns"
             if not found.header and width == 10:
                 raise InputError(f"{path}:{found.lines[0]}: {_boxes(found.rows[0][-1])}")
@@ -132,11 +133,13 @@ def eth_ucy_table(
     if assumed:
         whole_numbers(raw, "frame", "id")
     notes = _exchanged(columns, names) if assumed else []
-    notes += not_used(c for c, ours in zip(found.header, names, strict=False) if not ours)
+    unused = [c for c, ours in zip(found.header, names, strict=False) if not ours]
     rate = found.frame_rate if frame_rate is None else frame_rate
     frames = columns.pop("frame")
     t = _seconds(frames, 0.4) if rate is None else (frames - frames.min()) / rate
-    table = RawTable(str(path), {"t": t, **columns}, found.lines)
+    table = RawTable(
+        str(path), {"t": t, **columns}, found.lines, header=found.header, unused=unused
+    )
     notes += _odd_speeds(columns, frames, t, rate)
     if not assumed:
         refuse_exchanged(table, frames)

@@ -1,4 +1,4 @@
-"""Tables in rows with notes on the columns that are not used."""
+"""Tables in rows: what they hold besides our columns, and sentences on it."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from crowdbot.core.trajectories.raw_table import Cells, RawTable
+from crowdbot.core.trajectories.table_columns.robots import is_robot
 from crowdbot.core.trajectories.table_columns.units import without_unit
 from crowdbot.core.trajectories.table_columns.wide import columns_of_people, in_rows
 from crowdbot.errors import InputError
@@ -17,7 +18,10 @@ from crowdbot.errors import InputError
 _NEEDLESS = ("z", "tz", "pos_z", "pz", "point", "geometry", "", "index", "unnamed: 0")
 _HEIGHT = re.compile(r"(?:^|[./_])position[./_]z$|^p_\w+_z$")
 #: Columns that say what moves, and what they say of people, in lower case.
-_KINDS = ("type", "object_type", "agent_type", "class", "label", "category", "classification")
+_KINDS = (
+    "type", "object_type", "agent_type", "entity", "kind", "class", "label", "category",
+    "classification",
+)  # fmt: skip
 _PEOPLE = {
     "ped",
     "peds",
@@ -26,6 +30,7 @@ _PEOPLE = {
     "person",
     "people",
     "human",
+    "agent",
     "adult",
     "child",
 }
@@ -35,17 +40,18 @@ _MOST_NAMED = 12
 _FLAT = 0.5
 
 
-def not_used(columns: Iterable[str]) -> list[str]:
-    """Return a sentence that names columns which are not read, if they could matter."""
-    names = ((column, without_unit(column).lower()) for column in columns)
+def sentences(table: RawTable) -> list[str]:
+    """Return the notes of a table, and a sentence on columns that are not used and could matter."""
+    names = ((column, without_unit(column).lower()) for column in table.unused)
     left = [column for column, name in names if name not in _NEEDLESS and not _HEIGHT.search(name)]
     if not left:
-        return []
+        return [*table.notes]
     more = f" and {len(left) - _MOST_NAMED} more" if len(left) > _MOST_NAMED else ""
-    return [
+    message = (
         f"the column{'s' if len(left) > 1 else ''} {', '.join(left[:_MOST_NAMED])}{more} "
         f"{'are' if len(left) > 1 else 'is'} not used"
-    ]
+    )
+    return [f"{table.name}: {message}", *table.notes]
 
 
 def completed(
@@ -57,7 +63,7 @@ def completed(
     *,
     wide: bool,
 ) -> RawTable:
-    """Return a table in rows, whose notes name the columns that are not used.
+    """Return a table in rows, with the columns that are not used and notes on odd ones.
 
     Args:
         table: what was found under our names.
@@ -71,24 +77,33 @@ def completed(
         InputError: a person has two columns of one name, or a number has x without y.
     """
     people = columns_of_people(table, header) if wide else {}
-    kinds, others = _not_people(header, cells) if wide else (set(), [])
+    kinds, others = _not_people(header, cells) if wide else ([], [])
     read = {*used, *kinds, *(header.index(c) for axes in people.values() for c in axes.values())}
-    notes = not_used(table.header[i] for i in range(len(header)) if i not in read)
-    notes += others + _height_is_y(table, header, cells)
-    table = replace(table, notes=[*table.notes, *(f"{table.name}: {note}" for note in notes)])
+    unused = [table.header[i] for i in range(len(header)) if i not in read]
+    notes = others + _height_is_y(table, header, cells)
+    table = replace(
+        table,
+        notes=[*table.notes, *(f"{table.name}: {note}" for note in notes)],
+        unused=unused,
+        kinds=() if people or not kinds else cells(header[kinds[0]]),
+    )
     return in_rows(table, people, cells, unit) if people else table
 
 
-def _not_people(header: Sequence[str], cells: Callable[[str], Cells]) -> tuple[set[int], list[str]]:
+def _not_people(
+    header: Sequence[str], cells: Callable[[str], Cells]
+) -> tuple[list[int], list[str]]:
     """Return indices of columns with object types, and notes on types other than people."""
-    places = {i for i, column in enumerate(header) if column.lower() in _KINDS}
+    places = [i for i, column in enumerate(header) if column.lower() in _KINDS]
     found = {i: sorted({str(cell).strip() for cell in cells(header[i])}) for i in places}
-    notes = [
-        f"the column {header[i]} says {', '.join(kinds[:6])}: all rows are read as people; leave "
-        "out those that are not"
-        for i, kinds in found.items()
-        if not {kind.lower() for kind in kinds} <= _PEOPLE
-    ]
+    notes = []
+    for i, kinds in found.items():
+        of_people = [kind for kind in kinds if not is_robot(kind)]
+        if not {kind.lower() for kind in of_people} <= _PEOPLE:
+            notes.append(
+                f"the column {header[i]} says {', '.join(of_people[:6])}: all rows are read as "
+                "people; leave out those that are not"
+            )
     return places, notes
 
 

@@ -76,7 +76,7 @@ def in_seconds(tables: Mapping[str, RawTable], frame_rate: float | None) -> Mapp
             rate = table.frame_rate
             if rate is None:
                 raise InputError(
-                    f"{table.name}: times are numbers of frames; a comment above the header, "
+                    f"{table.where(0)}: times are numbers of frames; a comment above the header, "
                     "'# framerate: 25', or frame_rate=25 (--frame-rate 25) says how many there "
                     "are in a second"
                 )

@@ -1,0 +1,83 @@
+"""Files of people alone are read alike by ``import``, ``realism`` and in Python."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crowdbot import Trajectories
+from crowdbot.cli import main
+from crowdbot.core.realism.near_robots.recordings import read_clips
+from crowdbot.core.trajectories.data_sets.people_files import holds_people, people_run, people_table
+from crowdbot.errors import InputError, RecordingWarning
+
+#: id, frame, x and y in cm, z: 60 cm a second at 16 frames a second.
+ROWS = "".join(f"{i}\t{f}\t{60 * f / 16}\t{100 * i}\t170\n" for i in (1, 2) for f in range(20))
+
+
+def _import(file: Path) -> np.ndarray:
+    """t, id, x, y that ``crowdbot import`` writes."""
+    out = file.parent / "scene.yaml"
+    assert main(["import", str(file), "--out", str(out)]) == 0
+    return np.loadtxt(file.parent / "scene.recorded.csv", delimiter=",", skiprows=1)
+
+
+@pytest.mark.parametrize("name", ["a.txt", "a.csv", "a.tsv"])
+@pytest.mark.parametrize("rate", ["# framerate: 16", "#framerate: 16.00 fps"])
+def test_a_comment_states_the_frame_rate_to_all(tmp_path: Path, name: str, rate: str) -> None:
+    file = tmp_path / name
+    file.write_text(f"{rate}\n# id frame x/cm y/cm z/cm\n{ROWS}")
+    rows = _import(file)
+    assert rows.shape == (40, 4)
+    np.testing.assert_allclose(rows[-1], [19 / 16, 2, 0.6 * 19 / 16, 2.0])
+    run = people_run(people_table(file), ())
+    assert run.agents is not None
+    np.testing.assert_allclose(run.t[-1], 19 / 16)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.ndjson", '{"track": {"f": 0, "p": 1, "x": 0, "y": 5}}\n'
+                     '{"track": {"f": 10, "p": 1, "x": 0.4, "y": 5}}\n'),
+        ("a.txt", "780 1 0 5\n790 1 0.4 5\n"),
+        ("a.csv", "t,x1,y1\n0,0,5\n0.4,0.4,5\n"),
+        ("b.txt", "time;id;x;y\n0;1;0;5\n0,4;1;0,4;5\n"),
+        ("c.csv", "t,id,x,y\n1700000000.5,1,0,5\n1700000000.9,1,0.4,5\n"),
+    ],
+)  # fmt: skip
+def test_import_reads_what_realism_reads(tmp_path: Path, name: str, text: str) -> None:
+    (tmp_path / name).write_text(text)
+    wanted = np.array([[0.0, 1.0, 0.0, 5.0], [0.4, 1.0, 0.4, 5.0]])
+    np.testing.assert_allclose(_import(tmp_path / name), wanted, atol=1e-6)
+
+
+def test_other_texts_are_no_people(tmp_path: Path) -> None:
+    for text in ("POLYGON ((0 0, 1 0, 1 1))", "", "a,b,c\n1,2,3\n", "1,2,3,4,5,6\n"):
+        assert not holds_people(tmp_path / "a.csv", text)
+
+
+def test_robots_are_no_people(tmp_path: Path) -> None:
+    rows = [f"{k},{who},{k},0" for k in range(3) for who in ("robot_1", "ann", "robotics_student")]
+    (tmp_path / "a.csv").write_text("t,id,x,y\n" + "\n".join(rows))
+    with pytest.warns(RecordingWarning, match=r"a\.csv:2: rows of a robot are left out .*: 3"):
+        run = Trajectories.from_csv(agents=tmp_path / "a.csv")
+    assert run.agents is not None
+    assert run.agents.x.shape == (3, 2)
+
+
+def test_more_cells_than_names_are_refused(tmp_path: Path) -> None:
+    """A decimal comma that also separates, and R's tables, whose first row has no name above."""
+    for text in ("t,id,x,y\n0,1,2,5,3,5\n", "t id x y\n1 0 7 2 3\n"):
+        (tmp_path / "a.csv").write_text(text)
+        with pytest.raises(InputError, match=r"a\.csv:2: . cells, and the first row has 4"):
+            Trajectories.from_csv(agents=tmp_path / "a.csv")
+
+
+def test_frames_among_robots_have_the_stated_rate(tmp_path: Path) -> None:
+    rows = [f"{k},robot,{k / 16},0,0.2\n{k},1,{9 - k / 16},1," for k in range(64)]
+    (tmp_path / "a.csv").write_text("# framerate: 16\nframe,id,x,y,radius\n" + "\n".join(rows))
+    (clip,) = read_clips(tmp_path / "a.csv")
+    assert clip.t[-1] - clip.t[0] == pytest.approx(63 / 16, abs=0.1)
