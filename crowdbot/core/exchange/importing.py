@@ -15,6 +15,7 @@ from crowdbot.core.exchange.overlaps import enter_in_turn
 from crowdbot.core.exchange.recordings import RECORDINGS
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.scene import Draft, id_of
+from crowdbot.core.exchange.source import IMAGES, IS_IMAGE
 from crowdbot.core.exchange.ways_out import keep_ways
 from crowdbot.core.exchange.write import WrittenLine, document
 from crowdbot.core.registry.registry import Registry
@@ -116,8 +117,8 @@ _ELSEWHERE = (
      "environment: {{kind: floor_plan, file: map.yaml}}, and its pos and waypoints are x, y and "
      "goals of crowd.agents"),
     ("features", f"a scenario reads GeoJSON with {_FLOOR}"),
-    *((ending, f"a scenario reads a floor plan with {_FLOOR}")
-      for ending in (".dxf", ".png", ".pgm")),
+    (".dxf", f"a scenario reads a floor plan with {_FLOOR}"),
+    *((ending, IS_IMAGE.replace("{", "{{").replace("}", "}}")) for ending in IMAGES),
     (".world", f"a world of Stage is not read: a map.yaml that names its bitmap is, with {_FLOOR}"),
     (".ifc", f"IFC {_NOT_READ}"),
     ("osm", f"OpenStreetMap's XML {_NOT_READ}"),

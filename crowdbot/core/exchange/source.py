@@ -12,6 +12,12 @@ from crowdbot.errors import SpecError
 
 #: Largest file, bytes: a trial of 10 000 people has 13 MB.
 LARGEST = 32_000_000
+#: Endings of images of maps.
+IMAGES = (".pgm", ".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff")
+IS_IMAGE = (
+    "is an image: a scenario reads it with the map.yaml that names it, with "
+    "environment: {kind: floor_plan, file: map.yaml}"
+)
 _DECLARED = re.compile(rb"<\?xml[^>]{0,200}encoding=[\"']([A-Za-z0-9._-]{1,40})[\"']")
 _ENCODINGS = {"utf-8": "utf-8", "utf8": "utf-8", "us-ascii": "utf-8", "ascii": "utf-8",
               "iso-8859-1": "latin-1", "latin1": "latin-1", "windows-1252": "cp1252"}  # fmt: skip
@@ -29,7 +35,10 @@ def source_of(path: Path) -> tuple[Source, str]:
         near = suggest_files(path) if isinstance(error, FileNotFoundError) else ""
         raise _unreadable(path, reason_of(error) + near) from None
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")) or b"\0" in raw[:1000]:
-        raise _unreadable(path, "is UTF-16 or a binary file; save it as UTF-8")
+        image = path.suffix.lower() in IMAGES
+        raise _unreadable(
+            path, IS_IMAGE if image else "is UTF-16 or a binary file; save it as UTF-8"
+        )
     text = _decoded(path, raw.removeprefix(b"\xef\xbb\xbf"))
     text = text.replace("\r\n", "\n").replace("\r", "\n")
     return Source(str(path), text.split("\n"), file=path), text

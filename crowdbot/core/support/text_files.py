@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from crowdbot.dsl.text.bounded_files import read_bytes, reason_of
@@ -56,7 +57,7 @@ def input_bytes(file: Path, most: int = LARGEST, name: str = "", *, text: bool =
         if isinstance(error, UnicodeDecodeError):
             near = _what_it_is(content)
         raise InputError(f"{name or file}: cannot be read: {reason_of(error)}{near}") from None
-    if text and (reason := _stands_for(content)):
+    if reason := _stands_for(content, text=text):
         raise InputError(f"{name or file}: cannot be read: {reason}")
     return content
 
@@ -78,14 +79,16 @@ def _what_it_is(content: bytes) -> str:
     return "; " + next(descriptions, "save it as UTF-8 if it is text")
 
 
-def _stands_for(content: bytes) -> str:
+def _stands_for(content: bytes, *, text: bool) -> str:
     """Return what a file contains in place of the wanted text, or "" if nothing is suspicious."""
     begin = content[:200].removeprefix(b"\xef\xbb\xbf").lstrip().lower()
     if begin.startswith(b"version https://git-lfs"):
         return "it is a pointer of Git LFS; 'git lfs pull' fetches the file"
+    if re.match(rb"(?:(?:\.\./)*\.git)?/annex/objects/", begin):
+        return "it is a pointer of git-annex; 'git annex get' fetches the file"
     if begin.startswith((b"<!doctype", b"<html")):
         return "it is a web page, perhaps the message of a failed download"
-    if begin.startswith(b"pk\x03\x04"):
+    if text and begin.startswith(b"pk\x03\x04"):
         return "it is a spreadsheet or a zip archive, export or unpack it"
     return ""
 

@@ -26,7 +26,19 @@ _SUFFIXES: dict[str, Format] = {
     ".yaml": "ros_map", ".yml": "ros_map", ".dxf": "dxf",
 }  # fmt: skip
 
-_IMAGES = (".pgm", ".png", ".bmp", ".jpg", ".jpeg", ".gif", ".tif", ".tiff")
+_IMAGES = (
+    ".pgm",
+    ".ppm",
+    ".pbm",
+    ".png",
+    ".bmp",
+    ".jpg",
+    ".jpeg",
+    ".gif",
+    ".tif",
+    ".tiff",
+    ".webp",
+)
 
 #: Smallest pieces of a plan in GeoJSON or WKT that are kept, m^2.
 _LEAST_AREA = 0.02
@@ -43,8 +55,8 @@ class FloorPlanFields(EnvironmentSpec):
     )
     image: Asset | None = default(
         None,
-        "Image of an occupancy grid, PGM or PNG; without it the one that the "
-        "`map.yaml` names, or the one of that name beside it where it names an absolute path.",
+        "Image of an occupancy grid: PGM, PNG, JPEG, BMP, GIF, TIFF, WebP; without it the one "
+        "that the `map.yaml` names, or the one of that name beside it where it names an absolute path.",
     )
     wkt: str | None = default(None, "The geometry as well-known text; this or `file`.")
     format: Format = default("auto", "Of the file; `auto`: by the ending of its name.")

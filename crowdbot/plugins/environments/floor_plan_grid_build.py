@@ -16,7 +16,8 @@ from crowdbot.plugins.environments.floor_plan_fields import FloorPlanFields
 from crowdbot.plugins.environments.floor_plan_units_build import moved
 from crowdbot.plugins.environments.grid_lines_build import MOST_TOLERANCE, straightened
 from crowdbot.plugins.environments.grid_rings_build import grid_rings
-from crowdbot.plugins.environments.ros_map_build import RosMap, free_cells, read_grey, read_map
+from crowdbot.plugins.environments.map_image_build import read_grey
+from crowdbot.plugins.environments.ros_map_build import RosMap, free_cells, read_map
 
 
 def read_grid(spec: FloorPlanFields, file: Path, image: Path | None) -> list[Any]:

@@ -1,4 +1,4 @@
-"""ROS occupancy grids: ``map.yaml`` with a PGM or PNG image, read as nav2's map server does.
+"""ROS occupancy grids: ``map.yaml`` with an image, read as nav2's map server does.
 
 Format: https://docs.nav2.org/configuration/packages/configuring-map-server.html.
 """
@@ -9,37 +9,26 @@ import logging
 import re
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath, PureWindowsPath
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.plugin import Array, InputError, did_you_mean, nearest
-from crowdbot.plugin.for_environments import (
-    LARGEST_TABLE,
-    SpecError,
-    input_bytes,
-    read_document,
-)
+from crowdbot.plugin.for_environments import SpecError, read_document
+from crowdbot.plugins.environments.map_image_build import Alpha
 
 _LOG = logging.getLogger(__name__)
-#: Largest image, px; anything larger is a mistake.
-MOST_PIXELS = 64_000_000
 #: Default thresholds, those of ROS, by which the grey 205 is unknown.
 _OCCUPIED, _FREE = 0.65, 0.196
 #: Grey of unknown cells in the images of ROS.
 _COARSE = 0.9  # m; cells of maps for robots are smaller
 _UNKNOWN = 205 / 255
-#: Length of the beginning of a PNG image, up to its width and height, bytes.
-_PNG_HEADER = 24
 #: How a path begins that a shell, a launch file or a client of ROS resolves.
 _ELSEWHERE = re.compile(r"~|\$|[a-z]+://")
-Alpha = Literal["averaged", "unknown", "ignored"]
 #: Interpretations of pixels, the default first, and what opacity means in each.
 _OPACITY: dict[str, Alpha] = {"trinary": "averaged", "scale": "unknown", "raw": "ignored"}
 _MODES = tuple(_OPACITY)
-_HEADER = re.compile(rb"(P[25])\s+((?:#[^\n]*\n\s*)*)(\d+)\s+(?:#[^\n]*\n\s*)*(\d+)\s+"
-                     rb"(?:#[^\n]*\n\s*)*(\d+)\s")  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -167,95 +156,6 @@ def relative_image(image: str) -> str:
         if path.is_absolute():
             return path.name
     return image
-
-
-def read_grey(file: Path, alpha: Alpha = "ignored") -> NDArray[np.float64]:
-    """Read a PGM or PNG image as grey values (H, W) from 0 to 1; the first row is on top.
-
-    Args:
-        alpha: what opacity means where the image has it: ``averaged`` with the colours;
-            ``unknown``: pixels that are not opaque become NaN; ``ignored``.
-
-    Raises:
-        InputError: it is neither PGM nor PNG.
-    """
-    content = input_bytes(file, LARGEST_TABLE, file.name)
-    if content[:2] in (b"P2", b"P5"):
-        return _read_pgm(file.name, content)
-    if content[:4] == b"\x89PNG":
-        return _read_png(file, content, alpha)
-    remedy = (
-        "a map names its picture with image, and environment.image names another"
-        if file.suffix.lower() in (".yaml", ".yml")
-        else "convert it to PNG"
-    )
-    raise InputError(f"{file.name}: is neither a PGM (P2, P5) nor a PNG image; {remedy}")
-
-
-def _read_pgm(name: str, content: bytes) -> NDArray[np.float64]:
-    header = _HEADER.match(content)
-    if header is None:
-        raise InputError(f"{name}: its PGM header is damaged")
-    width, height, most = (int(header[k]) for k in (3, 4, 5))
-    if not (0 < width * height <= MOST_PIXELS and 0 < most < 65536):
-        raise InputError(f"{name}: {width} x {height} pixels up to {most} is not an image of a map")
-    rest = content[_first_pixel(header, width * height * (1 if most < 256 else 2)) :]
-    try:
-        if header[1] == b"P2":
-            cells = np.array(rest.split()[: width * height], np.float64)
-        else:
-            cells = np.frombuffer(rest, ">u2" if most > 255 else "u1", width * height)
-    except ValueError as error:
-        raise InputError(f"{name}: fewer pixels than {width} x {height}") from error
-    if len(cells) != width * height:
-        raise InputError(f"{name}: fewer pixels than {width} x {height}")
-    if (largest := int(cells.max())) > most:
-        raise InputError(f"{name}: a pixel is {largest}, but its header says at most {most}")
-    return cells.astype(np.float64).reshape(height, width) / most
-
-
-def _first_pixel(header: re.Match[bytes], size: int) -> int:
-    """Return the offset of the pixels, bytes: one blank after the header, or where the size fits.
-
-    Programs of Windows end the header with two characters, and some with a comment.
-    """
-    content = header.string
-    tail = re.compile(rb"\n|[ \t]*#[^\n]*\n").match(content, header.end())
-    if header[1] == b"P5" and tail is not None and len(content) - tail.end() == size:
-        return tail.end()
-    return header.end()
-
-
-def _read_png(file: Path, content: bytes, alpha: Alpha) -> NDArray[np.float64]:
-    from PIL import Image
-
-    if len(content) < _PNG_HEADER:
-        raise InputError(f"{file.name}: is a damaged PNG image: it ends in its header")
-    width, height = (int.from_bytes(content[k : k + 4], "big") for k in (16, 20))
-    if not 0 < width * height <= MOST_PIXELS:  # before its pixels are unpacked
-        raise InputError(f"{file.name}: {width} x {height} pixels are not an image of a map")
-    try:
-        image = Image.open(file)
-        image.load()
-    except MemoryError:
-        raise
-    except Exception as error:  # its decoders raise many types
-        raise InputError(f"{file.name}: is a damaged PNG image: {error}") from error
-    return _grey(image, alpha)
-
-
-def _grey(image: Any, alpha: Alpha) -> NDArray[np.float64]:
-    """Return the mean of a pixel's colours, as nav2's map server takes it."""
-    if image.mode.startswith("I"):  # 16 bits
-        return np.asarray(image, np.float64) / 65535.0
-    see_through = image.mode in ("LA", "PA", "RGBA") or "transparency" in image.info
-    values = np.asarray(image.convert("RGBA" if see_through else "RGB"), np.float64) / 255.0
-    if see_through and alpha == "averaged":
-        return np.asarray(values.mean(axis=2))
-    grey = values[..., :3].mean(axis=2)
-    if see_through and alpha == "unknown":
-        grey = np.where(values[..., 3] < 1.0, np.nan, grey)
-    return np.asarray(grey)
 
 
 def _taken_for_free(ros_map: RosMap) -> bool:

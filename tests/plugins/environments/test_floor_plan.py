@@ -378,11 +378,11 @@ def test_png_too_and_slanted_walls_become_straight(tmp_path: Path) -> None:
 def test_damaged_images(tmp_path: Path) -> None:
     path = _map(tmp_path)
     for content, message in (
-        (b"P5\n8 8\n255\n123", "fewer pixels"),
+        (b"P5\n8 8\n255\n123", "3 pixels, fewer than"),
         (b"P5\nx", "header is damaged"),
-        (b"GIF89a", "neither a PGM"),
+        (b"GIF89a", "damaged GIF"),
         (b"\x89PNG\r\n\x1a\nxx", "damaged PNG"),
-        (b"P5\n9999999 99999\n255\n", "is not an image of a map"),
+        (b"P5\n9999999 99999\n255\n", "are not an image of a map"),
     ):
         (tmp_path / "m.pgm").write_bytes(content)
         with pytest.raises(InputError, match=message):
