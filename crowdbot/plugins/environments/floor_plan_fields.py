@@ -56,7 +56,8 @@ class FloorPlanFields(EnvironmentSpec):
     image: Asset | None = default(
         None,
         "Image of an occupancy grid: PGM, PNG, JPEG, BMP, GIF, TIFF, WebP; without it the one "
-        "that the `map.yaml` names, or the one of that name beside it where it names an absolute path.",
+        "that the `map.yaml` names, or the one of that name beside it where it names an absolute "
+        "path.",
     )
     wkt: str | None = default(None, "The geometry as well-known text; this or `file`.")
     format: Format = default("auto", "Of the file; `auto`: by the ending of its name.")

@@ -86,8 +86,8 @@ def _of_no_image(file: Path, content: bytes) -> str:
             "environment.image names another"
         )
     return (
-        "is no image that is read (PGM, PPM, PBM, PNG, JPEG, BMP, GIF, TIFF, WebP); it begins with "
-        f"{content[:8]!r}: {_CONVERT.format(file.name)}"
+        "is not an image that is read (PGM, PPM, PBM, PNG, JPEG, BMP, GIF, TIFF, WebP); it begins "
+        f"with {content[:8]!r}: {_CONVERT.format(file.name)}"
     )
 
 
