@@ -12,9 +12,10 @@ from crowdbot.plugins.planners.goal_seek import GoalSeekSpec
 class GoalSeek:
     """Turns towards the goal while driving and brakes in time."""
 
+    _limits: RobotLimits  # from `reset` on
+
     def __init__(self, spec: GoalSeekSpec) -> None:
         self._spec = spec
-        self._limits: RobotLimits | None = None
 
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
@@ -25,7 +26,6 @@ class GoalSeek:
 
     def step(self, obs: Observation) -> Command:
         """Return the next command; zero at the goal."""
-        assert self._limits is not None
         spec = self._spec
         distance, error = bearing(obs.pose, obs.goal)
         aim = [distance * math.cos(error), distance * math.sin(error)]

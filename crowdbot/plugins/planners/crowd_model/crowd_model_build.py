@@ -30,7 +30,6 @@ class CrowdModelPlanner(VelocityPlanner):
 
     def forget(self) -> None:
         """Create the crowd, with the robot's size and speed; compile its kernels."""
-        assert self.limits is not None
         speed = np.full(_PEOPLE + 1, 1.4)
         speed[0] = self._spec.speed * self.limits.v_max
         radius = np.full(_PEOPLE + 1, max(self._spec.person_radius, 0.05))
@@ -41,7 +40,6 @@ class CrowdModelPlanner(VelocityPlanner):
 
     def velocity(self, obs: Observation, scene: PlannerScene, wish: Array) -> tuple[float, float]:
         """Return the velocity that a person would choose, m/s."""
-        assert self.limits is not None
         here, own = np.array([scene.pose.x, scene.pose.y]), np.array(velocity_of(scene))
         people = people_near(scene, self.limits.v_max, _HORIZON, _PEOPLE)
         desired = self._decided(people, here, own, wish)

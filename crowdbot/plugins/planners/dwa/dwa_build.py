@@ -60,10 +60,11 @@ class Dwa:
     `PerceivedScene` remembers scans and `DeadEnds` a small map.
     """
 
+    _limits: RobotLimits  # from `reset` on
+
     def __init__(self, spec: DwaSpec) -> None:
         self._spec = spec
         self._lidars, self._near = LidarPoints({}), NearPoints({})
-        self._limits: RobotLimits | None = None
         self._core, _ = core_of(spec.robot_radius, None)
         self._half_width = disc_radius(spec.robot_radius, None)
         self._reach = self._half_width
@@ -174,7 +175,6 @@ class Dwa:
         self, pose: Pose, detour: Detour, points: Array, velocities: Array
     ) -> tuple[float, float]:
         """Return the direction in which to go on (rad) and for how long it is free (s)."""
-        assert self._limits is not None
         spec, walking = self._spec, self._scene.walking
         speed = spec.speed * self._limits.v_max
         leeway = _OUTLINED_LEEWAY if len(self._core) else _LEEWAY
@@ -204,7 +204,6 @@ class Dwa:
         velocities: Array,
     ) -> tuple[float, float, float]:
         """Return v, w and vy of the best candidate; zeros if none is safe."""
-        assert self._limits is not None
         limits = self._limits
         top = min(self._spec.speed * limits.v_max, braking_speed(distance, limits.a_max))
         if self._sideways:
@@ -222,7 +221,6 @@ class Dwa:
         self, twist: tuple[float, float], direction: float, top: float, escaping: bool
     ) -> Array:
         """Return (C, 2) target velocities that the robot reaches within the window."""
-        assert self._limits is not None
         spec, limits = self._spec, self._limits
         v, w = twist
         dv, dw = limits.a_max * spec.window, limits.alpha_max * spec.window
@@ -235,7 +233,6 @@ class Dwa:
 
     def _window_aside(self, obs: Observation, direction: float, goal: float, top: float) -> Array:
         """Return (C, 3) target velocities of a robot that goes sideways and looks to the goal."""
-        assert self._limits is not None
         spec, limits, w = self._spec, self._limits, obs.twist[1]
         dw = limits.alpha_max * spec.window
         left, right = max(w - dw, -limits.w_max), min(w + dw, limits.w_max)

@@ -57,12 +57,7 @@ class FollowTheGap(VelocityPlanner):
     def _shadows(self, scene: PlannerScene, goal: float) -> tuple[Array, Array, Array]:
         """Return the bearings from the goal's direction, half widths (rad) and gaps (m)."""
         spec = self._spec
-        discs = np.concatenate(
-            [
-                scene.people[:, [0, 1, 4]],
-                np.column_stack([scene.points, np.zeros(len(scene.points))]),
-            ]
-        )
+        discs = scene.discs
         x, y = discs[:, 0] - scene.pose.x, discs[:, 1] - scene.pose.y
         away, clear = np.hypot(x, y), self.radius + spec.safety + discs[:, 2]
         near = away - clear < spec.reach

@@ -7,13 +7,11 @@ velocity, free space is convex around each stage, and the goal is a line to foll
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from crowdbot.plugin import Array, Command, Observation, RobotLimits, SensorInfo, Task
-from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
+from crowdbot.plugin import Array, Command, Observation, Task
 from crowdbot.plugins.planners.mpc.constraints_build import constrain, poses_of
 from crowdbot.plugins.planners.mpc.mpc import MpcSpec
 from crowdbot.plugins.planners.mpc.problem_build import Problem
@@ -24,41 +22,31 @@ from crowdbot.plugins.planners.shared.braking_build import (
 )
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.optional_build import library
-from crowdbot.plugins.planners.shared.path_finder_build import PathFinder
-from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
+from crowdbot.plugins.planners.shared.path_planner_build import PathPlanner
 from crowdbot.plugins.planners.shared.starts_build import moved_on, starts
-from crowdbot.plugins.planners.shared.surroundings_build import (
-    PlannerSurroundings,
-    in_base,
-    people_near,
-)
+from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene, in_base, people_near
 
-_ARRIVED, _BESIDE = 0.1, 0.12
 #: At most this many people are predicted, the nearest.
 _PEOPLE = 40
 
 
-class Mpc:
+class Mpc(PathPlanner):
     """The MPC planner; remembers its last plan and its time."""
 
+    _problem: Problem  # for the limits of the robot
+
     def __init__(self, spec: MpcSpec, casadi: Any) -> None:
+        super().__init__(spec, leaves=False)
         self._spec, self._casadi = spec, casadi
-        self._surroundings = PlannerSurroundings(spec)
-        self._problem: Problem | None = None
         self._robot = covering_discs(spec.robot_radius, None)
-        self._path_finder = PathFinder(1.0)
         self._plan, self._planned = np.zeros((spec.stages, 2)), 0.0
         self._failed = self._braked = 0
 
-    def reset(
-        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
-    ) -> None:
+    def prepare(self, task: Task, seed: int) -> None:
         """Build the problem for the robot's limits; compile kernels."""
         del seed
-        spec = self._spec
-        self._surroundings.reset(sensors)
+        spec, limits = self._spec, self.limits
         self._robot = covering_discs(spec.robot_radius, task.robot)
-        self._path_finder = PathFinder(swept_half_width(spec.robot_radius, task.robot) + _BESIDE)
         self._problem = Problem(self._casadi, spec, limits)
         self._plan, self._planned = np.zeros((spec.stages, self._problem.axes)), 0.0
         self._failed = self._braked = 0
@@ -70,19 +58,22 @@ class Mpc:
 
     def step(self, obs: Observation) -> Command:
         """Return the beginning of the best plan; zero at the goal."""
-        assert self._problem is not None
-        limits = self._problem.limits
-        scene = self._surroundings.see(obs)
-        pose = scene.pose
-        distance, _ = bearing(pose, obs.goal)
         self._plan = moved_on(self._plan, (obs.t - self._planned) / self._problem.dt)
         self._planned = obs.t
-        if distance <= _ARRIVED:
-            self._plan[:] = 0.0
-            return Command(0.0, 0.0)
-        top = min(self._spec.speed * limits.v_max, braking_speed(distance, limits.a_max))
-        waypoint = self._path_finder.waypoint(obs.t, pose, scene.seen, obs.goal)
-        people = people_near(scene, limits.v_max, self._spec.horizon, _PEOPLE)
+        return super().step(obs)
+
+    def interrupted(self, command: Command, *, at_goal: bool) -> Command:
+        """Return the command; the plan is to stand."""
+        del at_goal
+        self._plan[:] = 0.0
+        return command
+
+    def drive(
+        self, obs: Observation, scene: PlannerScene, waypoint: tuple[float, float], top: float
+    ) -> Command:
+        """Return the beginning of the best plan."""
+        pose = scene.pose
+        people = people_near(scene, self.limits.v_max, self._spec.horizon, _PEOPLE)
         world = AroundRobot(people, scene.points, self._robot)
         state = (pose.x, pose.y, pose.yaw, *scene.twist)
         command = self._command(world, state, waypoint, top)
@@ -96,8 +87,7 @@ class Mpc:
         self, world: AroundRobot, state: MotionState, waypoint: tuple[float, float], top: float
     ) -> Command:
         """Return the beginning of the new plan, slower where the robot could not stop in time."""
-        assert self._problem is not None
-        limits = self._problem.limits
+        limits = self.limits
         improved = self._improved(world, state, waypoint, top)
         if improved is None:
             self._failed += 1
@@ -117,7 +107,6 @@ class Mpc:
         self, world: AroundRobot, state: MotionState, waypoint: tuple[float, float], top: float
     ) -> Array | None:
         """Return the cheapest plan found by the solver; None if it fails from every start."""
-        assert self._problem is not None
         problem, values = self._problem, self._state_of(state, waypoint, top)
         others = starts(state, waypoint, problem.limits, self._plan.shape, problem.dt, top)
         given = [self._given(world, plan, values) for plan in others]
@@ -135,7 +124,6 @@ class Mpc:
 
     def _given(self, world: AroundRobot, plan: Array, values: Array) -> Array:
         """Return the optimiser's parameters: the state, and constraints along the last plan."""
-        assert self._problem is not None
         spec = self._spec
         poses = poses_of(tuple(values[:3].tolist()), plan, self._problem.dt)
         margins = spec.margin, spec.margin_growth

@@ -7,12 +7,9 @@ nav2's MPPI controller (docs.nav2.org, configuration of the MPPI controller).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
-from crowdbot.plugin import Array, Command, Observation, RobotLimits, SensorInfo, Task
-from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
+from crowdbot.plugin import Array, Command, Observation, RobotLimits, Task
 from crowdbot.plugins.planners.mppi import rollouts_build as rollouts
 from crowdbot.plugins.planners.mppi import samples_build as samples
 from crowdbot.plugins.planners.mppi.mppi import MppiSpec
@@ -20,39 +17,31 @@ from crowdbot.plugins.planners.shared.braking_build import AroundRobot, MotionSt
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.distance_field_build import DistanceField
 from crowdbot.plugins.planners.shared.driven_path_build import driven
-from crowdbot.plugins.planners.shared.path_finder_build import PathFinder
-from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
+from crowdbot.plugins.planners.shared.path_planner_build import PathPlanner
 from crowdbot.plugins.planners.shared.starts_build import STARTS, starts
-from crowdbot.plugins.planners.shared.surroundings_build import PlannerSurroundings, people_near
+from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene, people_near
 
-_ARRIVED, _BESIDE = 0.1, 0.12
 #: Time for which a command is held before the robot must be able to brake, s; clearance then, m.
 _HELD, _TOUCH = 0.1, 0.04
 
 
-class Mppi:
+class Mppi(PathPlanner):
     """The MPPI planner; remembers its last plan."""
 
     def __init__(self, spec: MppiSpec) -> None:
+        super().__init__(spec)
         self._spec = spec
-        self._surroundings = PlannerSurroundings(spec, leaves=True)
         self._field = DistanceField()
-        self._limits: RobotLimits | None = None
         self._robot = covering_discs(spec.robot_radius, None)
-        self._path_finder = PathFinder(1.0)
         self._p: Array = np.zeros(samples.PARAMETERS)
         self._samples = self._drawn(2, 0)
         self._next = 0.0
 
-    def reset(
-        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
-    ) -> None:
+    def prepare(self, task: Task, seed: int) -> None:
         """Draw the noise; compile kernels that are not compiled yet."""
-        spec = self._spec
-        self._limits, self._next = limits, 0.0
-        self._surroundings.reset(sensors, task.robot)
+        spec, limits = self._spec, self.limits
+        self._next = 0.0
         self._robot = covering_discs(spec.robot_radius, task.robot)
-        self._path_finder = PathFinder(swept_half_width(spec.robot_radius, task.robot) + _BESIDE)
         self._p = _parameters(spec, limits)
         self._samples = self._drawn(2, 0)
         around = rollouts.RolloutObstacles(
@@ -66,22 +55,19 @@ class Mppi:
         )  # fmt: skip
         self._samples = self._drawn(spec.samples, seed)
 
-    def step(self, obs: Observation) -> Command:
-        """Return the first control of the improved plan; zero at the goal."""
-        assert self._limits is not None
-        spec, limits = self._spec, self._limits
-        scene = self._surroundings.see(obs)
-        pose = scene.pose
-        distance, _ = bearing(pose, obs.goal)
-        if distance <= _ARRIVED:
+    def interrupted(self, command: Command, *, at_goal: bool) -> Command:
+        """Return the command; at the goal the plan is to stand."""
+        if at_goal:
             self._samples.plan[:] = 0.0
-            return Command(0.0, 0.0)
-        if self._surroundings.away is not None:
-            return self._surroundings.away
+        return command
+
+    def drive(
+        self, obs: Observation, scene: PlannerScene, waypoint: tuple[float, float], top: float
+    ) -> Command:
+        """Return the first control of the improved plan."""
+        spec, limits, pose = self._spec, self.limits, scene.pose
         self._shift(obs.t)
-        top = min(spec.speed * limits.v_max, braking_speed(distance, limits.a_max))
         self._p[samples.TOP] = top
-        waypoint = self._path_finder.waypoint(obs.t, pose, scene.seen, obs.goal)
         self._field.fill(scene.points, pose.x, pose.y)
         people = people_near(scene, limits.v_max, spec.steps * spec.step_time, samples.MOST_PEOPLE)
         around = rollouts.RolloutObstacles(
@@ -101,9 +87,8 @@ class Mppi:
 
     def _start(self, state: MotionState, waypoint: tuple[float, float], top: float) -> None:
         """Write the simple plans that are rolled out beside the noisy ones."""
-        assert self._limits is not None
-        shape = self._spec.steps, 3 if self._limits.vy_max > 0.0 else 2
-        plans = starts(state, waypoint, self._limits, shape, self._spec.step_time, top)
+        shape = self._spec.steps, 3 if self.limits.vy_max > 0.0 else 2
+        plans = starts(state, waypoint, self.limits, shape, self._spec.step_time, top)
         self._samples.simple[:, :, : shape[1]] = plans
 
     def _braking(self, world: AroundRobot, state: MotionState) -> Command:
@@ -111,9 +96,8 @@ class Mppi:
 
         The mean of rollouts that pass on both sides may pass on neither.
         """
-        assert self._limits is not None
         v, w, vy = self._samples.plan[1].tolist()  # the first is over when the robot has it
-        slew = self._limits.a_max, self._limits.alpha_max
+        slew = self.limits.a_max, self.limits.alpha_max
         for share in (1.0, 0.5, 0.0):
             if can_brake(world, state, (share * v, w, share * vy), slew, (_HELD, _TOUCH)):
                 return Command(share * v, w, share * vy)

@@ -38,14 +38,12 @@ class Navground(VelocityPlanner):
 
     def forget(self) -> None:
         """Create the behaviour for the robot."""
-        assert self.limits is not None
         self._behavior = made(self._core, self._spec)
         self._behavior.kinematics = _kinematics(self._core, self.limits)
         self._behavior.radius = self.radius
 
-    def drive(self, obs: Observation, scene: PlannerScene, wish: Array, error: float) -> Command:
+    def pursue(self, obs: Observation, scene: PlannerScene, wish: Array, error: float) -> Command:
         """Return the command of the behaviour, within the robot's limits."""
-        assert self.limits is not None
         limits = self.limits
         chosen = self.velocity(obs, scene, wish)
         obs.log("navground/change", math.hypot(chosen[0] - wish[0], chosen[1] - wish[1]))

@@ -43,7 +43,6 @@ class Orca(VelocityPlanner):
 
     def velocity(self, obs: Observation, scene: PlannerScene, wish: Array) -> tuple[float, float]:
         """Return the allowed velocity nearest to the desired one, m/s."""
-        assert self.limits is not None
         sideways = self.limits.vy_max > 0.0
         error = 0.0 if sideways else self._spec.tracking_error
         people = _nearest(scene, self._spec.neighbours)

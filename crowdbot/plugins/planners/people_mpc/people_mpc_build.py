@@ -2,69 +2,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
-from crowdbot.plugin import Array, Command, Indices, Observation, RobotLimits, SensorInfo, Task
+from crowdbot.plugin import Array, Command, Indices, Observation, RobotLimits, Task
 from crowdbot.plugins.planners.dwa.window_build import candidates, candidates_aside
-from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
+from crowdbot.plugins.planners.goal_seek_build import bearing
 from crowdbot.plugins.planners.people_mpc import plans_build as plans
 from crowdbot.plugins.planners.people_mpc.people_mpc import PeopleMpcSpec
 from crowdbot.plugins.planners.people_mpc.plan_world_build import PlanWorld
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.distance_field_build import DistanceField
-from crowdbot.plugins.planners.shared.path_finder_build import PathFinder
-from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
-from crowdbot.plugins.planners.shared.surroundings_build import (
-    PlannerScene,
-    PlannerSurroundings,
-    in_base,
-    rows_near,
-)
+from crowdbot.plugins.planners.shared.path_planner_build import PathPlanner
+from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene, in_base, rows_near
 
-_ARRIVED = 0.1
 #: At most this many people are predicted, the nearest.
 MOST_PEOPLE = 40
 #: The prediction that people keep their velocity.
 KEPT = np.zeros((0, 0, 2))
 #: People do not respond.
 IGNORE = np.zeros(0)
-#: Free space beside the robot on the way past what stands, m.
-_BESIDE = 0.12
 
 
-class PeopleMpc:
+class PeopleMpc(PathPlanner):
     """The planner `people_mpc`; remembers its last plan.
 
-    `PlannerSurroundings` remembers people and `PathFinder` static obstacles. Subclasses predict
-    people otherwise, by `predicted`.
+    Subclasses predict people otherwise, by `predicted`.
     """
 
     #: Name of what it logs.
     name = "people_mpc"
 
     def __init__(self, spec: PeopleMpcSpec) -> None:
+        super().__init__(spec)
         self._spec = spec
-        self._surroundings = PlannerSurroundings(spec, leaves=True)
         self._field = DistanceField()
-        self._limits: RobotLimits | None = None
         self._robot = covering_discs(spec.robot_radius, None)
-        self._path_finder = PathFinder(1.0)
         self._p: Array = np.zeros(plans.PARAMETERS)
         self._last, self._aside, self._pace = (0.0, 0.0, 0.0), 0.0, 1.0
 
-    def reset(
-        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
-    ) -> None:
-        """Store the limits and mounts; compile kernels that are not compiled yet."""
+    def prepare(self, task: Task, seed: int) -> None:
+        """Store the outline; compile kernels that are not compiled yet."""
         del seed
-        spec = self._spec
-        self._limits = limits
-        self._surroundings.reset(sensors, task.robot)
-        self._robot = covering_discs(spec.robot_radius, task.robot)
-        self._path_finder = PathFinder(swept_half_width(spec.robot_radius, task.robot) + _BESIDE)
-        self._p = self.parameters(limits)
+        self._robot = covering_discs(self._spec.robot_radius, task.robot)
+        self._p = self.parameters(self.limits)
         self._last, self._aside, self._pace = (0.0, 0.0, 0.0), 0.0, 1.0
         self._firsts((0.0, 0.0, 0.0), 1.0, 0.0)
         world = PlanWorld(
@@ -81,23 +61,18 @@ class PeopleMpc:
         plans.best_plan(world, self._p, state, np.zeros((1, 3)), self._last, 0.0)
         plans.path_of(self._p, state, (9.0, 0.0), self._last, 0.0, 1.0)
 
-    def step(self, obs: Observation) -> Command:
-        """Return the beginning of the best plan; zero at the goal."""
-        assert self._limits is not None
-        scene = self._surroundings.see(obs)
+    def interrupted(self, command: Command, *, at_goal: bool) -> Command:
+        """Return the command, and remember its speed."""
+        del at_goal
+        self._last = (command.v, 0.0, 0.0)
+        return command
+
+    def drive(
+        self, obs: Observation, scene: PlannerScene, waypoint: tuple[float, float], top: float
+    ) -> Command:
+        """Return the beginning of the best plan."""
         pose = scene.pose
-        distance, _ = bearing(pose, obs.goal)
-        if distance <= _ARRIVED:
-            self._last = (0.0, 0.0, 0.0)
-            return Command(0.0, 0.0)
-        if self._surroundings.away is not None:
-            self._last = (self._surroundings.away.v, 0.0, 0.0)
-            return self._surroundings.away
-        waypoint = self._path_finder.waypoint(obs.t, pose, scene.seen, obs.goal)
         _, error = bearing(pose, waypoint)
-        top = min(
-            self._spec.speed * self._limits.v_max, braking_speed(distance, self._limits.a_max)
-        )
         firsts = self._firsts(scene.twist, top, error)
         self._field.fill(scene.points, pose.x, pose.y)
         rows = rows_near(scene, self._p[plans.V_MAX], self._spec.horizon, MOST_PEOPLE)
@@ -167,8 +142,7 @@ class PeopleMpc:
 
     def _firsts(self, twist: tuple[float, float, float], top: float, error: float) -> Array:
         """Return (C, 3) first velocities v, w, vy that the robot reaches within the window."""
-        assert self._limits is not None
-        spec, limits = self._spec, self._limits
+        spec, limits = self._spec, self.limits
         v, w, vy = twist
         dv, dw = limits.a_max * spec.window, limits.alpha_max * spec.window
         left, right = max(w - dw, -limits.w_max), min(w + dw, limits.w_max)

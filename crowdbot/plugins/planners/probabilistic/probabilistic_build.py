@@ -28,11 +28,12 @@ _SHARES = np.array([1.0, 0.75, 0.5, 0.25])[:, None]
 class Probabilistic:
     """Chooses the most likely path, given the user, another planner and the crowd."""
 
+    _limits: RobotLimits  # from `reset` on
+
     def __init__(self, spec: ProbabilisticSpec, half: Planner) -> None:
         self._spec, self._half = spec, half
         self._user, self._surroundings = UserInput(), PlannerSurroundings(spec)
         self._robot = covering_discs(spec.robot_radius, None)
-        self._limits: RobotLimits | None = None
         self._p: Array = np.zeros(joint.PARAMETERS)
 
     def reset(
@@ -75,7 +76,6 @@ class Probabilistic:
 
     def _candidates(self, twist: tuple[float, float, float], user: Array, planner: Array) -> Array:
         """Return (C, 3) commands: of user and planner, slowed, blended, and those within reach."""
-        assert self._limits is not None
         spec, limits = self._spec, self._limits
         v, w, _ = twist
         dv, dw = limits.a_max * spec.window, limits.alpha_max * spec.window

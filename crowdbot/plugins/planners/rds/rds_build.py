@@ -69,7 +69,6 @@ class Rds(VelocityPlanner):
         """Return the command nearest to the desired one, the planner's own or the user's."""
         if self._spec.wish == "goal":
             return super().step(obs)
-        assert self.limits is not None
         scene, user, reach = self._surroundings.see(obs), self._user.command(obs), self._point
         if self.limits.vy_max > 0.0:
             along, aside = self._nearest(obs, scene, (user.v, user.vy), self.limits.vy_max)
@@ -83,14 +82,13 @@ class Rds(VelocityPlanner):
         discs = covering_discs(self._spec.robot_radius, self.body)
         self._ends = np.ascontiguousarray(discs[[0, -1], :2])
         self._round = float(discs[:, 2].max())
-        if self.limits is not None and self.limits.vy_max == 0.0:
+        if self.limits.vy_max == 0.0:
             self._ends, self._round = capsule_ahead(discs, self._point)
         things = np.array([[3.0, 0.0, 0.0, 0.0, 0.3]])
         self._choose(things, (0.0, 0.0, 0.0), (0.5, 0.0), np.zeros((0, 4)))
 
     def velocity(self, obs: Observation, scene: PlannerScene, wish: Array) -> tuple[float, float]:
         """Return the velocity of the reference point, in the robot's own axes, m/s."""
-        assert self.limits is not None
         limits, reach = self.limits, self._spec.reference_point
         top = float(np.hypot(*wish))
         error = math.remainder(math.atan2(wish[1], wish[0]) - scene.pose.yaw, 2.0 * math.pi)
@@ -106,15 +104,13 @@ class Rds(VelocityPlanner):
         self, obs: Observation, scene: PlannerScene, desired: tuple[float, float], aside: float
     ) -> tuple[float, float]:
         """Return the velocity of the reference point nearest to the wanted one, m/s."""
-        assert self.limits is not None
         bounds = _bounds(min(0.0, self.limits.v_min), self.limits.v_max, aside)
         chosen = self._choose(_things(scene), scene.twist, desired, bounds)
         obs.log("rds/change", math.hypot(chosen[0] - desired[0], chosen[1] - desired[1]))
         return chosen
 
-    def drive(self, obs: Observation, scene: PlannerScene, wish: Array, error: float) -> Command:
+    def pursue(self, obs: Observation, scene: PlannerScene, wish: Array, error: float) -> Command:
         """Return the command that gives the reference point its velocity."""
-        assert self.limits is not None
         along, aside = self.velocity(obs, scene, wish)
         ahead = np.array([self._spec.reference_point, 0.0])
         obs.draw("velocity", np.array([ahead, ahead + np.array([along, aside])]))
@@ -131,7 +127,7 @@ class Rds(VelocityPlanner):
         bounds: Array,
     ) -> tuple[float, float]:
         spec = self._spec
-        sideways = self.limits is not None and self.limits.vy_max > 0.0
+        sideways = self.limits.vy_max > 0.0
         count, rest = len(bounds), spec.basis == "rest"
         self._lines[:count] = bounds
         count = half_planes(

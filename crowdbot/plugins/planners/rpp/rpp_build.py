@@ -7,7 +7,6 @@ Macenski, Singh, Martín, Ginés, "Regulated pure pursuit for robot path trackin
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 
@@ -16,58 +15,39 @@ from crowdbot.plugin import (
     Command,
     NoValidCommand,
     Observation,
-    RobotLimits,
-    SensorInfo,
     Task,
     kernel,
 )
-from crowdbot.plugins.planners.goal_seek_build import bearing, braking_speed
+from crowdbot.plugins.planners.goal_seek_build import bearing
 from crowdbot.plugins.planners.rpp.rpp import RppSpec
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.driven_path_build import driven
-from crowdbot.plugins.planners.shared.path_finder_build import PathFinder
-from crowdbot.plugins.planners.shared.robot_outline_build import swept_half_width
-from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene, PlannerSurroundings
+from crowdbot.plugins.planners.shared.path_planner_build import PathPlanner
+from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene
 
-_ARRIVED, _BESIDE = 0.1, 0.12
 #: Time step of the arc that is tested for collisions, s.
 _STEP = 0.1
 
 
-class Rpp:
+class Rpp(PathPlanner):
     """Follows the path that `PathFinder` plans around static obstacles."""
 
     def __init__(self, spec: RppSpec) -> None:
+        super().__init__(spec)
         self._spec = spec
-        self._surroundings = PlannerSurroundings(spec, leaves=True)
-        self._limits: RobotLimits | None = None
         self._robot = covering_discs(spec.robot_radius, None)
-        self._path_finder = PathFinder(1.0)
 
-    def reset(
-        self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
-    ) -> None:
-        """Store limits, outline and mounts; compile kernels that are not compiled yet."""
+    def prepare(self, task: Task, seed: int) -> None:
+        """Store the outline; compile kernels that are not compiled yet."""
         del seed
-        self._limits = limits
-        self._surroundings.reset(sensors, task.robot)
         self._robot = covering_discs(self._spec.robot_radius, task.robot)
-        self._path_finder = PathFinder(
-            swept_half_width(self._spec.robot_radius, task.robot) + _BESIDE
-        )
         arc_gap(np.ones((1, 3)), self._robot, 0.1, 0.0, 0.1)
 
-    def step(self, obs: Observation) -> Command:
-        """Return the next command; zero at the goal."""
-        assert self._limits is not None
-        spec, limits = self._spec, self._limits
-        scene = self._surroundings.see(obs)
-        distance, _ = bearing(scene.pose, obs.goal)
-        if distance <= _ARRIVED:
-            return Command(0.0, 0.0)
-        if self._surroundings.away is not None:
-            return self._surroundings.away
-        waypoint = self._path_finder.waypoint(obs.t, scene.pose, scene.seen, obs.goal)
+    def drive(
+        self, obs: Observation, scene: PlannerScene, waypoint: tuple[float, float], top: float
+    ) -> Command:
+        """Return the command along the arc to a point."""
+        spec, limits = self._spec, self.limits
         far, error = bearing(scene.pose, waypoint)
         obs.draw("aim", [[0.0, 0.0], [far * math.cos(error), far * math.sin(error)]])
         if abs(error) > spec.turn_in_place:
@@ -75,16 +55,14 @@ class Rpp:
         ahead = max(spec.look_ahead_min, abs(scene.twist[0]) * spec.look_ahead_time)
         ahead = min(ahead, spec.look_ahead_max, max(far, 1e-3))
         curvature = 2.0 * math.sin(error) / ahead
-        v = self._regulated(curvature, scene)
-        v = min(v, braking_speed(distance, limits.a_max))
+        v = min(self._regulated(curvature, scene), top)
         obs.log("rpp/speed", v)
         return self._checked(obs, scene, v, _clamped(v * curvature, limits.w_max))
 
     def _regulated(self, curvature: float, scene: PlannerScene) -> float:
         """Return the speed for a bend (1/m) and the nearest obstacle, m/s."""
-        spec, limits = self._spec, self._limits
-        assert limits is not None
-        top = spec.speed * limits.v_max
+        spec = self._spec
+        top = spec.speed * self.limits.v_max
         bend = top
         if abs(curvature) * spec.bend_radius > 1.0:
             bend = top / (abs(curvature) * spec.bend_radius)
@@ -111,8 +89,7 @@ class Rpp:
 
 def _discs(scene: PlannerScene) -> Array:
     """Return what is around, (N, 3) x, y, radius in the robot's frame, m."""
-    points = np.column_stack([scene.points, np.zeros(len(scene.points))])
-    discs = np.concatenate([scene.people[:, [0, 1, 4]], points])
+    discs = scene.discs
     x, y = discs[:, 0] - scene.pose.x, discs[:, 1] - scene.pose.y
     c, s = math.cos(scene.pose.yaw), math.sin(scene.pose.yaw)
     return np.column_stack([c * x + s * y, c * y - s * x, discs[:, 2]])

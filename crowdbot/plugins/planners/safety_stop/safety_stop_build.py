@@ -30,11 +30,12 @@ _SLACK = 1e-3
 class SafetyStop:
     """Slows the user's command down, or lets another planner drive while it is unsafe."""
 
+    _limits: RobotLimits  # from `reset` on
+
     def __init__(self, spec: SafetyStopSpec, half: Planner | None) -> None:
         self._spec, self._half = spec, half
         self._user, self._surroundings = UserInput(), PlannerSurroundings(spec)
         self._robot = covering_discs(spec.robot_radius, None)
-        self._limits: RobotLimits | None = None
 
     def reset(
         self, task: Task, limits: RobotLimits, sensors: Mapping[str, SensorInfo], seed: int
@@ -75,7 +76,6 @@ class SafetyStop:
 
     def _gap(self, command: Command, bodies: Array) -> float:
         """Return the least gap until the robot stands, m; sideways speed is not looked at."""
-        assert self._limits is not None
         v, w, _ = command
         return arc_gap_moving(
             bodies, self._robot, v, w, self._spec.reaction_time, self._limits.a_max

@@ -60,7 +60,6 @@ class LearnedPlanner(VelocityPlanner):
         if obs.t < self._next - 1e-6:
             return self._chosen
         self._next = obs.t + self._spec.step_time
-        assert self.limits is not None
         pose, top = scene.pose, float(np.hypot(*wish))
         speed = self._spec.speed * self.limits.v_max
         goal = min(self._spec.goal_distance, math.hypot(obs.goal[0] - pose.x, obs.goal[1] - pose.y))

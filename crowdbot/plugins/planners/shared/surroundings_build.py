@@ -59,6 +59,12 @@ class PlannerScene:
     seen: Array
     tracks: Array
 
+    @property
+    def discs(self) -> Array:
+        """Return people and points as discs, (N + P, 3) x, y, radius, m."""
+        points = np.column_stack([self.points, np.zeros(len(self.points))])
+        return np.concatenate([self.people[:, [0, 1, RADIUS]], points])
+
 
 class PlannerSurroundings:
     """Computes a `PlannerScene` from each observation; has the lifetime of a planner.

@@ -61,6 +61,8 @@ class _Scene:
 class StopAndGo:
     """Drives as fast as its box allows, towards free space."""
 
+    _limits: RobotLimits  # from `reset` on
+
     def __init__(self, spec: StopAndGoSpec) -> None:
         self._spec = spec
         self._seek = GoalSeek(
@@ -71,7 +73,6 @@ class StopAndGo:
             )
         )
         self._points = LidarPoints({})
-        self._limits: RobotLimits | None = None
         self._heading_by_walls = HeadingByWalls()
         self._motion = PeopleMotion(spec.look_back)
         self._half_width, self._front = half_width_and_front(spec.robot_radius, None)
@@ -114,7 +115,6 @@ class StopAndGo:
 
     def _box(self, v: float) -> Array:
         """Return the corners (5, 2), closed, of the box that has to be empty at a speed, m."""
-        assert self._limits is not None
         spec = self._spec
         stopping = abs(v) * (spec.reaction_time + 0.5 * abs(v) / self._limits.a_max)
         long, half = self._front + spec.front_margin + stopping, self._half_width + spec.side_margin
@@ -145,7 +145,6 @@ class StopAndGo:
             error: angle from the heading to the goal's direction, rad.
             yaw: the robot's yaw, rad.
         """
-        assert self._limits is not None
         spec = self._spec
         near = distance < spec.aside_reach
         if abs(error) > _AHEAD or near or spec.most_aside == 0.0:
@@ -177,7 +176,6 @@ class StopAndGo:
             scene: the surroundings.
             heading: heading of the box, base frame, rad.
         """
-        assert self._limits is not None
         spec = self._spec
         c, s = math.cos(heading), math.sin(heading)
         ahead, left = np.array([c, s]), np.array([-s, c])

@@ -42,17 +42,12 @@ class VfhPlus(VelocityPlanner):
     def velocity(self, obs: Observation, scene: PlannerScene, wish: Array) -> tuple[float, float]:
         """Return the velocity in the cheapest open direction, m/s; zero if all are closed."""
         spec, pose = self._spec, scene.pose
-        discs = np.concatenate(
-            [
-                scene.people[:, [0, 1, 4]],
-                np.column_stack([scene.points, np.zeros(len(scene.points))]),
-            ]
-        )
+        discs = scene.discs
         wide = self.radius + spec.safety
         histogram(discs, (pose.x, pose.y), wide, spec.window, self._density)
         self._open = np.where(self._open, self._density < spec.high, self._density < spec.low)
         free = self._open.copy()
-        if self.limits is not None and self.limits.vy_max == 0.0:
+        if self.limits.vy_max == 0.0:
             turning = _TURNING * abs(scene.twist[0]) / max(self.limits.v_max, 1e-9)
             masked(discs, (pose.x, pose.y, pose.yaw), wide, turning, free)
         goal = math.atan2(wish[1], wish[0])
