@@ -76,7 +76,7 @@ class _FromRecord:
         if run is None:
             return self
         plain = self._plain
-        return plain.func(run) if isinstance(plain, cached_property) else plain.fget(run)
+        return plain.func(run) if isinstance(plain, cached_property) else plain.__get__(run, owner)
 
 
 for _name in (*_PLAIN, "moment", "axes", "conditions", "provenance", *IN_MORE):

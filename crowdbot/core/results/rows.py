@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from operator import attrgetter
+from typing import Any, Generic, TypeVar, cast
 
 from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.types.ending import Ending
@@ -18,7 +19,19 @@ WITHOUT_RUN: Mapping[str, float] = {
     "safe_efficiency": 0.0,
 }
 
+T = TypeVar("T")
+
 _PLACES = {"own": "own process", "in_process": "in the simulator's process"}
+
+
+class OfRecord(Generic[T]):
+    """An attribute of a `RunRow` that is one of its record; a path of names, joined by dots."""
+
+    def __init__(self, path: str) -> None:
+        self._read = attrgetter(path)
+
+    def __get__(self, row: RunRow, _: type) -> T:
+        return cast(T, self._read(row.record))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,6 +48,45 @@ class RunRow:
     directory: str
     entry: str = ""
 
+    #: Id of the scenario.
+    scenario = OfRecord[str]("scenario")
+    #: The seed of sensor noise and planner.
+    seed = OfRecord[int]("seed")
+    #: Axis of the suite -> label, in its order; ``draw`` where a condition has several.
+    axes = OfRecord[Mapping[str, str]]("axes")
+    #: The reason for which it ended.
+    reason = OfRecord[str]("reason")
+    #: Arrival time of the robot, s.
+    goal_time = OfRecord[float | None]("goal_time")
+    #: Simulated time, s.
+    sim_time = OfRecord[float]("sim_time")
+    #: Wall time of the simulation, s.
+    wall_time = OfRecord[float]("wall_time")
+    #: True if the planner gets information that no sensor can provide.
+    privileged = OfRecord[bool]("knows_truth")
+    #: True if every plugin and the planner came from an installed distribution.
+    pinned = OfRecord[bool]("trusted")
+    #: Process of the planner: ``own``, or ``in_process``, inside the simulator.
+    planner_process = OfRecord[str]("planner_process")
+    #: True if a person drove the robot.
+    by_person = OfRecord[bool]("by_person")
+    #: Role of the planner: floor, baseline, ceiling or candidate.
+    role = OfRecord[str]("role")
+    #: Hash of the scenario.
+    spec_hash = OfRecord[str]("hashes.spec")
+    #: Hash of the drawn crowd; runs that share one are a cluster of the statistics.
+    realisation_hash = OfRecord[str]("hashes.realisation")
+    #: The hash of all simulated numbers.
+    trajectory_hash = OfRecord[str]("hashes.trajectory")
+    #: Mean number of people in the crowd's area, 1/m²; None without people.
+    density = OfRecord[float | None]("density")
+    #: Source of its people: ``locked``, ``drawn``, or ``none``.
+    agents = OfRecord[str]("agents")
+    #: Metrics that its suite names, in order.
+    suite_metrics = OfRecord[Sequence[str]]("suite_metrics")
+    #: Axis -> its title, and its label in words.
+    axis_words = OfRecord[Mapping[str, Sequence[str]]]("axis_words")
+
     @property
     def run_id(self) -> str:
         """Return the hash of all that determines the run; in a leaderboard, of the entry, too."""
@@ -47,11 +99,6 @@ class RunRow:
         return self.record.suite + altered_suffix(self.record.altered)
 
     @property
-    def scenario(self) -> str:
-        """Id of the scenario."""
-        return self.record.scenario
-
-    @property
     def changes(self) -> str:
         """Changes to the scenario, from ``--set``, in words; empty if there are none."""
         return ", ".join(self.record.altered) or altered_digest(self.record.scenario)
@@ -62,54 +109,9 @@ class RunRow:
         return self.entry or self.record.planner.label
 
     @property
-    def seed(self) -> int:
-        """Return the seed of sensor noise and planner."""
-        return self.record.seed
-
-    @property
-    def axes(self) -> Mapping[str, str]:
-        """Axis of the suite -> label, in its order; ``draw`` where a condition has several."""
-        return self.record.axes
-
-    @property
     def status(self) -> str:
         """Return the word of its `Ending`; a run without a robot cannot time out."""
         return str(Ending.PEOPLE_ALONE if self.record.people_alone else self.record.status)
-
-    @property
-    def reason(self) -> str:
-        """Return the reason for which it ended."""
-        return self.record.reason
-
-    @property
-    def goal_time(self) -> float | None:
-        """Arrival time of the robot, s."""
-        return self.record.goal_time
-
-    @property
-    def sim_time(self) -> float:
-        """Simulated time, s."""
-        return self.record.sim_time
-
-    @property
-    def wall_time(self) -> float:
-        """Wall time of the simulation, s."""
-        return self.record.wall_time
-
-    @property
-    def privileged(self) -> bool:
-        """True if the planner gets information that no sensor can provide."""
-        return self.record.knows_truth
-
-    @property
-    def pinned(self) -> bool:
-        """True if every plugin and the planner came from an installed distribution."""
-        return self.record.trusted
-
-    @property
-    def planner_process(self) -> str:
-        """Process of the planner: ``own``, or ``in_process``, inside the simulator."""
-        return self.record.planner_process
 
     @property
     def source(self) -> str:
@@ -124,59 +126,14 @@ class RunRow:
         )
 
     @property
-    def by_person(self) -> bool:
-        """True if a person drove the robot."""
-        return self.record.by_person
-
-    @property
     def replaced_draws(self) -> int:
         """Number of draws that were replaced before the one that counts; see `ExcusedPart`."""
         return len(self.record.excused)
 
     @property
-    def role(self) -> str:
-        """Role of the planner: floor, baseline, ceiling or candidate."""
-        return self.record.role
-
-    @property
-    def spec_hash(self) -> str:
-        """Hash of the scenario."""
-        return self.record.hashes.spec
-
-    @property
-    def realisation_hash(self) -> str:
-        """Hash of the drawn crowd; runs that share one are a cluster of the statistics."""
-        return self.record.hashes.realisation
-
-    @property
-    def trajectory_hash(self) -> str:
-        """Return the hash of all simulated numbers."""
-        return self.record.hashes.trajectory
-
-    @property
-    def density(self) -> float | None:
-        """Mean number of people in the crowd's area, 1/m²; None without people."""
-        return self.record.density
-
-    @property
-    def agents(self) -> str:
-        """Source of its people: ``locked``, ``drawn``, or ``none``."""
-        return self.record.agents
-
-    @property
     def crowd(self) -> str:
         """Return the fingerprint of the crowd's behaviour; empty without people."""
         return self.record.crowd or ""
-
-    @property
-    def suite_metrics(self) -> Sequence[str]:
-        """Metrics that its suite names, in order."""
-        return self.record.suite_metrics
-
-    @property
-    def axis_words(self) -> Mapping[str, Sequence[str]]:
-        """Axis -> its title, and its label in words."""
-        return self.record.axis_words
 
     @property
     def moment(self) -> Sequence[Any] | None:
