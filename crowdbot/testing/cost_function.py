@@ -90,15 +90,12 @@ def check_excess_is_not_negative(
     base alone exceeds the best cost are skipped. A vectorised function has no base; its costs are
     at least zero.
     """
-    for cost in _costs(component, registry):
-        for seed in crowd_views.SEEDS:
-            view = crowd_views.random_view(seed)
-            velocities = _candidates(view)
-            total = _total(cost, view, velocities)
-            least = bases_of(cost, view, velocities) if isinstance(cost, CompiledCost) else 0.0
-            with np.errstate(invalid="ignore"):
-                below = total < least - 1e-9 * (1.0 + np.abs(least))
-            assert not np.any(below), f"{np.count_nonzero(below)} costs are below their base"
+    for cost, view, velocities in _in_crowds(component, registry):
+        total = _total(cost, view, velocities)
+        least = bases_of(cost, view, velocities) if isinstance(cost, CompiledCost) else 0.0
+        with np.errstate(invalid="ignore"):
+            below = total < least - 1e-9 * (1.0 + np.abs(least))
+        assert not np.any(below), f"{np.count_nonzero(below)} costs are below their base"
 
 
 def check_candidates_are_independent(
@@ -109,17 +106,14 @@ def check_candidates_are_independent(
     If this fails, ``excess`` writes into ``work``, or ``evaluate`` compares candidates with each
     other. A function that draws random numbers must declare ``CompiledCost(ordered=True)``.
     """
-    for cost in _costs(component, registry):
+    for cost, view, velocities in _in_crowds(component, registry):
         if isinstance(cost, CompiledCost) and cost.ordered:
             continue
-        for seed in crowd_views.SEEDS:
-            view = crowd_views.random_view(seed)
-            velocities = _candidates(view)
-            total = _total(cost, view, velocities)
-            again = _total(cost, view, np.ascontiguousarray(velocities[:, ::-1]))[:, ::-1]
-            few = _total(cost, view, np.ascontiguousarray(velocities[:, :3]))
-            assert _near(total, again), "in another order candidates cost something else"
-            assert _near(total[:, :3], few), "without the others candidates cost something else"
+        total = _total(cost, view, velocities)
+        again = _total(cost, view, np.ascontiguousarray(velocities[:, ::-1]))[:, ::-1]
+        few = _total(cost, view, np.ascontiguousarray(velocities[:, :3]))
+        assert _near(total, again), "in another order candidates cost something else"
+        assert _near(total[:, :3], few), "without the others candidates cost something else"
 
 
 def check_excess_stops_above_budget(
@@ -129,12 +123,10 @@ def check_excess_stops_above_budget(
 
     If this fails, it stops too early: return only once the sum is above ``budget``.
     """
-    for cost in _costs(component, registry):
+    for cost, view, velocities in _in_crowds(component, registry):
         if isinstance(cost, CompiledCost) and not cost.ordered:
-            for seed in crowd_views.SEEDS:
-                view = crowd_views.random_view(seed)
-                wrong = stops_at_budget(cost, view, _candidates(view))
-                assert not wrong, wrong
+            wrong = stops_at_budget(cost, view, velocities)
+            assert not wrong, wrong
 
 
 def check_lower_bound_is_below_excess(
@@ -145,12 +137,10 @@ def check_lower_bound_is_below_excess(
     If this fails, the search skips candidates that might win: include only certain terms in the
     lower bound.
     """
-    for cost in _costs(component, registry):
+    for cost, view, velocities in _in_crowds(component, registry):
         if isinstance(cost, CompiledCost) and cost.lower_bound is not None:
-            for seed in crowd_views.SEEDS:
-                view = crowd_views.random_view(seed)
-                wrong = above_lower_bound(cost, view, _candidates(view))
-                assert not wrong, wrong
+            wrong = above_lower_bound(cost, view, velocities)
+            assert not wrong, wrong
 
 
 def check_work_is_written(component: Component[Any], registry: Registry | None = None) -> None:
@@ -159,12 +149,10 @@ def check_work_is_written(component: Component[Any], registry: Registry | None =
     If this fails, let ``prepare`` write row 0, and all of other rows that ``excess`` reads: its old
     contents belong to another agent.
     """
-    for cost in _costs(component, registry):
+    for cost, view, velocities in _in_crowds(component, registry):
         if isinstance(cost, CompiledCost) and not cost.ordered:
-            for seed in crowd_views.SEEDS:
-                view = crowd_views.random_view(seed)
-                same = forgets_work(cost, view, _candidates(view))
-                assert same, "costs depend on what was in work before prepare"
+            same = forgets_work(cost, view, velocities)
+            assert same, "costs depend on what was in work before prepare"
 
 
 def check_gradient(component: Component[Any], registry: Registry | None = None) -> None:
@@ -203,13 +191,10 @@ def check_translation_invariant(
     If this fails, an absolute coordinate is used: all data about others is relative. A function
     that depends on places declares it in ``Component(exceptions=...)``.
     """
-    for cost in _costs(component, registry):
-        for seed in crowd_views.SEEDS:
-            view = crowd_views.random_view(seed)
-            velocities = _candidates(view)
-            there = crowd_views.moved(view, np.array([16.0, -8.0]))
-            same = _near(_total(cost, view, velocities), _total(cost, there, velocities))
-            assert same, "16 m along x, -8 m along y velocities cost something else"
+    for cost, view, velocities in _in_crowds(component, registry):
+        there = crowd_views.moved(view, np.array([16.0, -8.0]))
+        same = _near(_total(cost, view, velocities), _total(cost, there, velocities))
+        assert same, "16 m along x, -8 m along y velocities cost something else"
 
 
 def check_rotation_invariant(component: Component[Any], registry: Registry | None = None) -> None:
@@ -218,15 +203,10 @@ def check_rotation_invariant(component: Component[Any], registry: Registry | Non
     If this fails, the axes are treated differently; the base gets candidates in the frame of the
     preferred velocity. A function that depends on directions declares it in its ``exceptions``.
     """
-    for cost in _costs(component, registry):
-        for seed in crowd_views.SEEDS:
-            view = crowd_views.random_view(seed)
-            velocities = _candidates(view)
-            again = _total(
-                cost, crowd_views.turned(view, _TURN), crowd_views.turn(velocities, _TURN)
-            )
-            same = _near(_total(cost, view, velocities), again)
-            assert same, f"turned by {_TURN} rad velocities cost something else"
+    for cost, view, velocities in _in_crowds(component, registry):
+        again = _total(cost, crowd_views.turned(view, _TURN), crowd_views.turn(velocities, _TURN))
+        same = _near(_total(cost, view, velocities), again)
+        assert same, f"turned by {_TURN} rad velocities cost something else"
 
 
 CHECKS: tuple[Callable[..., None], ...] = (
@@ -246,6 +226,16 @@ CHECKS: tuple[Callable[..., None], ...] = (
 
 def _costs(component: Component[Any], registry: Registry | None) -> Iterator[Cost]:
     return each_built(component, registry)
+
+
+def _in_crowds(
+    component: Component[Any], registry: Registry | None
+) -> Iterator[tuple[Cost, CrowdView, Array]]:
+    """Yield each function with random crowds and their candidates."""
+    for cost in _costs(component, registry):
+        for seed in crowd_views.SEEDS:
+            view = crowd_views.random_view(seed)
+            yield cost, view, _candidates(view)
 
 
 def _candidates(view: CrowdView) -> Array:

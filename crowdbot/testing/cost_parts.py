@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from copy import copy
 from dataclasses import replace
 
@@ -48,30 +49,24 @@ def bases_of(cost: CompiledCost, view: CrowdView, velocities: Array) -> Array:
 def stops_at_budget(cost: CompiledCost, view: CrowdView, velocities: Array) -> str:
     """Return what is wrong with ``excess`` when it gets a budget; empty if nothing is."""
     costs = WeightedCosts([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
-    for i in range(len(view.agents)):
-        only = replace(view, decides=np.arange(len(view.agents)) == i)
-        Evaluator(costs).total(only, velocities)  # prepares ``work`` for this agent
-        for _, agent in _each_agent(costs, only):
-            wrong = _budgets(costs, agent, velocities[i])
-            if wrong:
-                return wrong
+    for i, agent in _each_prepared(costs, view, velocities):
+        wrong = _budgets(costs, agent, velocities[i])
+        if wrong:
+            return wrong
     return ""
 
 
 def above_lower_bound(cost: CompiledCost, view: CrowdView, velocities: Array) -> str:
     """Return what is wrong with ``lower_bound`` compared with the excess; empty if nothing is."""
     costs = WeightedCosts([replace(cost, weight=1.0)], view.agents, relaxation_time=0.5)
-    for i in range(len(view.agents)):
-        only = replace(view, decides=np.arange(len(view.agents)) == i)
-        Evaluator(costs).total(only, velocities)  # prepares ``work`` for this agent
-        for _, agent in _each_agent(costs, only):
-            ux, uy = np.ascontiguousarray(velocities[i].T)
-            least = np.full(len(ux), np.nan)
-            _fill_lower_bounds(ux, uy, agent, costs.functions, least)
-            for x, y, bound in zip(ux, uy, least, strict=True):
-                true = _excess(x, y, math.inf, agent, costs.functions)
-                if not math.isnan(true) and not 0.0 <= bound <= true * (1.0 + 1e-9):
-                    return f"excess is {true:g}, its lower bound {bound:g}"
+    for i, agent in _each_prepared(costs, view, velocities):
+        ux, uy = np.ascontiguousarray(velocities[i].T)
+        least = np.full(len(ux), np.nan)
+        _fill_lower_bounds(ux, uy, agent, costs.functions, least)
+        for x, y, bound in zip(ux, uy, least, strict=True):
+            true = _excess(x, y, math.inf, agent, costs.functions)
+            if not math.isnan(true) and not 0.0 <= bound <= true * (1.0 + 1e-9):
+                return f"excess is {true:g}, its lower bound {bound:g}"
     return ""
 
 
@@ -100,6 +95,16 @@ def _budgets(costs: WeightedCosts, agent: Rows[AgentRecord], velocities: Array) 
             if true > budget * (1.0 + 1e-9) and not found > budget * (1.0 - 1e-9):
                 return f"excess is {true:g}, with a budget of {budget:g} only {found:g}"
     return ""
+
+
+def _each_prepared(
+    costs: WeightedCosts, view: CrowdView, velocities: Array
+) -> Iterator[tuple[int, Rows[AgentRecord]]]:
+    """Yield each agent that decides as `_each_agent` does, with ``work`` prepared for it."""
+    for i in range(len(view.agents)):
+        only = replace(view, decides=np.arange(len(view.agents)) == i)
+        Evaluator(costs).total(only, velocities)
+        yield from _each_agent(costs, only)
 
 
 def _each_agent(costs: WeightedCosts, view: CrowdView) -> list[tuple[int, Rows[AgentRecord]]]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.figures.gltf_file import GltfFile
+from crowdbot.core.geometry.rotation import rotation_of
 from crowdbot.core.types.arrays import Array
 
 _USUAL = {"translation": (0.0, 0.0, 0.0), "rotation": (0.0, 0.0, 0.0, 1.0), "scale": (1.0,) * 3}
@@ -104,15 +105,6 @@ def _matrix(node: dict[str, Any]) -> Array:
     move, turn, scale = (np.array(node.get(n, usual), float) for n, usual in _USUAL.items())
     x, y, z, w = turn / (np.linalg.norm(turn) or 1.0)
     found = np.eye(4)
-    found[:3, :3] = (
-        np.array(
-            [
-                [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-                [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-                [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-            ]
-        )
-        * scale
-    )
+    found[:3, :3] = rotation_of(x, y, z, w) * scale
     found[:3, 3] = move
     return found

@@ -22,6 +22,17 @@ def rotation(roll: float, pitch: float, yaw: float) -> Array:
     )
 
 
+def rotation_of(x: float, y: float, z: float, w: float) -> Array:
+    """Return the matrix (3, 3) of a quaternion of length 1."""
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
 def quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
     """Return the rotation as a quaternion x, y, z, w."""
     angles = (roll, pitch, yaw)

@@ -11,6 +11,7 @@ import numpy as np
 from crowdbot.core.realism.bins import FEATURES, LEAST_SAMPLES
 from crowdbot.core.realism.compare import RealismScore, ReportedErrors, beside
 from crowdbot.core.realism.corridor import corridors, simulate
+from crowdbot.core.realism.json_numbers import rounded
 from crowdbot.core.realism.model import CrowdModel
 from crowdbot.core.realism.reference import RealismReference
 from crowdbot.core.realism.statistics import Statistics, statistics_of
@@ -78,37 +79,37 @@ class Realism:
         b = self.beside
         return {
             "crowd": self.name,
-            "index": _rounded(self.index),
-            "score": _rounded(self.score),
-            "score_range": [_rounded(self.low), _rounded(self.high)],
-            "ceiling": _rounded(self.ceiling),
-            "floor": _rounded(self.floor),
-            "parts": {name: _rounded(v) for name, v in self.parts.items()},
+            "index": rounded(self.index, 4),
+            "score": rounded(self.score, 4),
+            "score_range": [rounded(self.low, 4), rounded(self.high, 4)],
+            "ceiling": rounded(self.ceiling, 4),
+            "floor": rounded(self.floor, 4),
+            "parts": {name: rounded(v, 4) for name, v in self.parts.items()},
             "coverage": [len(self.reference.cells), self.of_cells or len(self.reference.cells)],
-            "cells": {"/".join(cell): _rounded(v) for cell, v in self.cells.items()},
+            "cells": {"/".join(cell): rounded(v, 4) for cell, v in self.cells.items()},
             "beside": {
-                "fundamental_diagram_error": _rounded(b.diagram_error),
-                "lane_order_error": _rounded(b.lane_error),
-                "nearest_error_m": [_rounded(v) for v in b.nearest_error],
-                "pair_correlation_error": _rounded(b.pair_error),
-                "overlap": _rounded(b.overlap),
+                "fundamental_diagram_error": rounded(b.diagram_error, 4),
+                "lane_order_error": rounded(b.lane_error, 4),
+                "nearest_error_m": [rounded(v, 4) for v in b.nearest_error],
+                "pair_correlation_error": rounded(b.pair_error, 4),
+                "overlap": rounded(b.overlap, 4),
             },
             "lane_order": {
                 "/".join(c): [
-                    _rounded(self.statistics.lanes.get(c, np.nan)),
-                    _rounded(self.reference.whole.lanes[c]),
+                    rounded(self.statistics.lanes.get(c, np.nan), 4),
+                    rounded(self.reference.whole.lanes[c], 4),
                 ]
                 for c in self.reference.cells
             },
             "nearest_m": {
                 "/".join(c): [
-                    [_rounded(v) for v in s.nearest[c]] if c in s.nearest else None
+                    [rounded(v, 4) for v in s.nearest[c]] if c in s.nearest else None
                     for s in (self.statistics, self.reference.whole)
                 ]
                 for c in self.reference.cells
             },
             "fundamental_diagram": {
-                flow: [[_rounded(v) for v in row] for row in rows]
+                flow: [[rounded(v, 4) for v in row] for row in rows]
                 for flow, rows in self.statistics.diagram.items()
             },
             "sources": list(self.reference.sources),
@@ -199,19 +200,3 @@ def _others(near: ReportedErrors) -> dict[str, float]:
         LANES: max(0.0, 1.0 - near.lane_error),
         PAIRS: max(0.0, 1.0 - near.pair_error),
     }
-
-
-def _rounded(value: float) -> float | None:
-    return round(float(value), 4) if np.isfinite(value) else None
-
-
-__all__ = [
-    "DIAGRAM",
-    "LANES",
-    "PAIRS",
-    "SEEDS",
-    "Realism",
-    "measure",
-    "measure_met",
-    "measure_tracks",
-]

@@ -15,7 +15,6 @@ from crowdbot.core.realism.bins import (
     EDGES,
     FEATURES,
     FLOWS,
-    PAIR_EDGES,
 )
 from crowdbot.core.realism.features import (
     CELL,
@@ -26,6 +25,7 @@ from crowdbot.core.realism.features import (
     SPEED,
     features,
 )
+from crowdbot.core.realism.json_numbers import number_or_nan, rounded
 from crowdbot.core.realism.pairs import pair_correlation
 from crowdbot.core.realism.tracks import CorridorTracks
 from crowdbot.core.types.arrays import Array
@@ -91,14 +91,14 @@ class Statistics:
                 "/".join(cell): {
                     "samples": self.count(cell),
                     "histograms": {f: _shares(h) for f, h in self.histograms[cell].items()},
-                    "lanes": _rounded(self.lanes.get(cell, np.nan)),
-                    "nearest": [_rounded(v) for v in self.nearest[cell]],
-                    "pairs": [_rounded(v) for v in self.pairs[cell]],
+                    "lanes": rounded(self.lanes.get(cell, np.nan), 3),
+                    "nearest": [rounded(v, 3) for v in self.nearest[cell]],
+                    "pairs": [rounded(v, 3) for v in self.pairs[cell]],
                 }
                 for cell in self.histograms
             },
             "diagram": {
-                flow: [[_rounded(v) for v in row] for row in rows]
+                flow: [[rounded(v, 3) for v in row] for row in rows]
                 for flow, rows in self.diagram.items()
             },
         }
@@ -114,9 +114,9 @@ class Statistics:
                 f: np.array(h, np.float64) * (count / max(1, sum(h)))
                 for f, h in found["histograms"].items()
             }
-            lanes[cell] = _number(found["lanes"])
-            nearest[cell] = np.array([_number(v) for v in found["nearest"]])
-            pairs[cell] = np.array([_number(v) for v in found["pairs"]])
+            lanes[cell] = number_or_nan(found["lanes"])
+            nearest[cell] = np.array([number_or_nan(v) for v in found["nearest"]])
+            pairs[cell] = np.array([number_or_nan(v) for v in found["pairs"]])
         diagram = {flow: np.array(rows, np.float64) for flow, rows in data["diagram"].items()}
         return cls(
             histograms=histograms, diagram=diagram, lanes=lanes, nearest=nearest, pairs=pairs
@@ -184,14 +184,3 @@ def _mean(values: Array) -> float:
 def _shares(histogram: Array) -> list[int]:
     total = float(np.sum(histogram))
     return [round(10_000 * v / total) if total else 0 for v in histogram]
-
-
-def _rounded(value: float) -> float | None:
-    return round(float(value), 3) if np.isfinite(value) else None
-
-
-def _number(value: float | None) -> float:
-    return float("nan") if value is None else float(value)
-
-
-__all__ = ["PAIR_EDGES", "Cell", "Statistics", "histograms_of", "statistics_of"]

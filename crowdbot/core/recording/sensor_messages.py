@@ -92,16 +92,15 @@ def _odometry(info: SensorInfo, namespace: str) -> Encoder:
 
 def _scan(info: SensorInfo, _: str) -> Encoder:
     assert info.angles is not None  # by is_even_fan
-    blank = template.laser_scan(info, info.angles)
-
-    def message(ns: int, values: Array) -> bytes:
-        return blank.fill(template.stamp(ns), values.astype(np.float32).tobytes())
-
-    return message
+    return _ranges(template.laser_scan(info, info.angles))
 
 
 def _range(info: SensorInfo, _: str) -> Encoder:
-    blank = template.range_reading(info)
+    return _ranges(template.range_reading(info))
+
+
+def _ranges(blank: template.Template) -> Encoder:
+    """Fill a message with all numbers in single precision."""
 
     def message(ns: int, values: Array) -> bytes:
         return blank.fill(template.stamp(ns), values.astype(np.float32).tobytes())
@@ -124,21 +123,19 @@ def _cloud(info: SensorInfo, _: str) -> Encoder:
 
 
 def _imu(info: SensorInfo, _: str) -> Encoder:
-    blank = template.imu(info.frame, imu_deviations(info))
-
-    def message(ns: int, values: Array) -> bytes:
-        data = np.asarray(values, np.float64)
-        return blank.fill(template.stamp(ns), data[:3].tobytes(), data[3:].tobytes())
-
-    return message
+    return _in_two(template.imu(info.frame, imu_deviations(info)), first=3)
 
 
 def _wrench(info: SensorInfo, _: str) -> Encoder:
-    blank = template.wrench(info.frame)
+    return _in_two(template.wrench(info.frame), first=2)
+
+
+def _in_two(blank: template.Template, first: int) -> Encoder:
+    """Fill a message with the first numbers, and at another place with the others."""
 
     def message(ns: int, values: Array) -> bytes:
         data = np.asarray(values, np.float64)
-        return blank.fill(template.stamp(ns), data[:2].tobytes(), data[2:].tobytes())
+        return blank.fill(template.stamp(ns), data[:first].tobytes(), data[first:].tobytes())
 
     return message
 

@@ -7,6 +7,7 @@ from xml.etree import ElementTree as Xml
 
 import numpy as np
 
+from crowdbot.core.geometry.rotation import rotation_of
 from crowdbot.core.robots.xml import name_of, numbers, six
 from crowdbot.errors import PluginError
 
@@ -55,10 +56,6 @@ def _from_quaternion(found: list[float], subject: str) -> list[float]:
         raise PluginError(f"{subject} has a quaternion of length 0")
     x, y, z, w = (part / length for part in found[3:])
     made = np.eye(4)
-    made[:3, :3] = [
-        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
-        [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
-        [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
-    ]
+    made[:3, :3] = rotation_of(x, y, z, w)
     made[:3, 3] = found[:3]
     return six(made)

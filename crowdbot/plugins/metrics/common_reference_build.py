@@ -11,6 +11,7 @@ import numpy as np
 from crowdbot.plugin import (
     Array,
     Footprint,
+    RobotTrack,
     Score,
     ScoreFactory,
     Trajectories,
@@ -29,6 +30,13 @@ def without_task(run: Trajectories) -> str:
         return "invalid_no_robot"
     has_task = run.robot.goal is not None or run.goal_zone is not None or run.person is not None
     return "" if has_task or run.robot.goal_time is not None else "invalid_no_goal"
+
+
+def robot_with_task(run: Trajectories) -> RobotTrack:
+    """Return the robot; raise `UndefinedError` if it is missing or has no goal to reach."""
+    if reason := without_task(run):
+        raise UndefinedError(reason)
+    return robot_of(run)
 
 
 def missed_goal(run: Trajectories) -> bool:

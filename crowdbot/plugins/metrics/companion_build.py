@@ -24,13 +24,19 @@ from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedErr
 EDGE = 1e-9
 
 
+def _stance(run: Trajectories, jump_speed: float) -> PersonStance:
+    """Return the robot's place beside the person; raise `UndefinedError` if there is none."""
+    found = person_stance(run, jump_speed)
+    if isinstance(found, str):
+        raise UndefinedError(found)
+    return found
+
+
 class Assisted(DeclaredMetric[specs.AssistedSpec]):
     """Scores ``assisted``: 1 if done, untouched, and no nearer than task and zone allow."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
-        found = person_stance(run, self.spec.jump_speed)
-        if isinstance(found, str):
-            raise UndefinedError(found)
+        found = _stance(run, self.spec.jump_speed)
         allowed = min(self.spec.intimate, found.task.distance - found.task.tolerance)
         least = float(np.nanmin(found.gap))
         kind = not found.touched and least >= allowed - EDGE
@@ -46,9 +52,7 @@ class TimeInPlace(DeclaredMetric[specs.TimeInPlaceSpec]):
     """
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
-        found = person_stance(run, self.spec.jump_speed)
-        if isinstance(found, str):
-            raise UndefinedError(found)
+        found = _stance(run, self.spec.jump_speed)
         if (whole := duration(found.t)) <= 0.0:
             raise UndefinedError("too_few_samples")
         inside = float(time_weights(found.t) @ found.in_place)
@@ -66,9 +70,7 @@ class TimeToPlace(DeclaredMetric[specs.TimeToPlaceSpec]):
     """Scores ``time_to_place``: time of the first sample in place; without one, a lower bound."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
-        found = person_stance(run, self.spec.jump_speed)
-        if isinstance(found, str):
-            raise UndefinedError(found)
+        found = _stance(run, self.spec.jump_speed)
         if not found.in_place.any():
             return [self.factory.censored("corrected", "never_in_place", lower=duration(found.t))]
         return [self.factory.ok("corrected", found.t[int(np.argmax(found.in_place))] - found.t[0])]
@@ -78,9 +80,7 @@ class PersonDistanceError(DeclaredMetric[specs.PersonDistanceErrorSpec]):
     """Scores ``person_distance_error``: the mean over the time that the task asks for."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
-        found = person_stance(run, self.spec.jump_speed)
-        if isinstance(found, str):
-            raise UndefinedError(found)
+        found = _stance(run, self.spec.jump_speed)
         return [_mean(self.factory, found, np.abs(found.gap - found.task.distance), "no_agents")]
 
 
@@ -91,9 +91,7 @@ class PersonAngleError(DeclaredMetric[specs.PersonAngleErrorSpec]):
     """
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
-        found = person_stance(run, self.spec.jump_speed)
-        if isinstance(found, str):
-            raise UndefinedError(found)
+        found = _stance(run, self.spec.jump_speed)
         return [_mean(self.factory, found, found.aside, "no_front")]
 
 
@@ -104,9 +102,7 @@ class PersonComfort(DeclaredMetric[specs.PersonComfortSpec]):
     """
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
-        found = person_stance(run, self.spec.jump_speed)
-        if isinstance(found, str):
-            raise UndefinedError(found)
+        found = _stance(run, self.spec.jump_speed)
         near = np.isfinite(found.gap) & (found.gap < self.spec.social - EDGE)
         weights = np.where(near, time_weights(found.t), 0.0)
         if weights.sum() <= 0.0:

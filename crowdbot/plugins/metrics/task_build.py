@@ -20,8 +20,8 @@ from crowdbot.plugin.for_metrics import durations, robot_of
 from crowdbot.plugins.metrics.collision_build import events
 from crowdbot.plugins.metrics.common_reference_build import (
     goal_distance,
+    robot_with_task,
     shortest_way,
-    without_task,
 )
 from crowdbot.plugins.metrics.declared_build import DeclaredMetric, UndefinedError
 from crowdbot.plugins.metrics.path_efficiency_build import obstacle
@@ -34,31 +34,25 @@ class Success(DeclaredMetric[specs.SuccessSpec]):
     """Scores ``success``: 1 if there is an arrival time, else 0."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
-        if reason := without_task(run):
-            raise UndefinedError(reason)
-        assert run.robot is not None
-        return [self.factory.ok("corrected", run.robot.goal_time is not None)]
+        robot = robot_with_task(run)
+        return [self.factory.ok("corrected", robot.goal_time is not None)]
 
 
 class SuccessNoCollision(DeclaredMetric[specs.SuccessNoCollisionSpec]):
     """Scores ``success_no_collision``: 1 for arrival without any contact in the motion, else 0."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
-        if reason := without_task(run):
-            raise UndefinedError(reason)
-        assert run.robot is not None
+        robot = robot_with_task(run)
         free = not len(events(truncate_at_arrival(run), self.spec))
-        return [self.factory.ok("corrected", run.robot.goal_time is not None and free)]
+        return [self.factory.ok("corrected", robot.goal_time is not None and free)]
 
 
 class Timeout(DeclaredMetric[specs.TimeoutSpec]):
     """Scores ``timeout``: 1 if the robot did not arrive, else 0."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
-        if reason := without_task(run):
-            raise UndefinedError(reason)
-        assert run.robot is not None
-        return [self.factory.ok("corrected", run.robot.goal_time is None)]
+        robot = robot_with_task(run)
+        return [self.factory.ok("corrected", robot.goal_time is None)]
 
 
 class Spl(DeclaredMetric[specs.SplSpec]):
@@ -99,10 +93,11 @@ class Stl(DeclaredMetric[specs.StlSpec]):
     """
 
     def _scores(self, run: Trajectories, refs: References) -> Sequence[Score]:
-        if reason := without_task(run) or obstacle(run, refs):
+        robot = robot_with_task(run)
+        if reason := obstacle(run, refs):
             raise UndefinedError(reason)
         assert refs.robot_alone is not None
-        if robot_of(run).goal_time is None:
+        if robot.goal_time is None:
             return [self.factory.ok("corrected", 0.0)]
         alone, taken = (travel_time(r, robot_of(r)) for r in (refs.robot_alone, run))
         return [self.factory.ratio("corrected", alone, max(alone, taken), self.spec.zero_tol)]
@@ -147,8 +142,7 @@ class AggregatedTime(DeclaredMetric[specs.AggregatedTimeSpec]):
     """Scores ``aggregated_time``: sum of times; a lower bound if anyone had not arrived."""
 
     def _scores(self, run: Trajectories, _: References) -> Sequence[Score]:
-        if reason := without_task(run):
-            raise UndefinedError(reason)
+        robot_with_task(run)
         run = truncate_at_arrival(run)
         trips = durations(run)
         total = travel_time(run, robot_of(run)) + float(trips.seconds.sum())

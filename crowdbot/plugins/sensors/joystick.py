@@ -32,6 +32,23 @@ RecordedCommand = Annotated[
 Place = Annotated[tuple[Length, Length], Field(strict=False)]
 
 
+def in_order(
+    commands: tuple[tuple[float, float, float], ...] | None,
+) -> tuple[tuple[float, float, float], ...] | None:
+    """Return recorded commands, if there are any, whose times rise.
+
+    Raises:
+        ValueError: they do not.
+    """
+    times = [t for t, _, _ in commands or ()]
+    for k, (one, two) in enumerate(pairwise(times)):
+        if two <= one:
+            raise ValueError(
+                f"times must rise; command {k + 2} is at {two:g} s, not after {one:g} s"
+            )
+    return commands
+
+
 class JoystickSpec(SensorSpec):
     """Reading: v (m/s), w (rad/s), the velocity that the driver commands.
 
@@ -63,18 +80,7 @@ class JoystickSpec(SensorSpec):
         strict=False,
     )
 
-    @field_validator("recorded")
-    @classmethod
-    def _in_order(
-        cls, value: tuple[RecordedCommand, ...] | None
-    ) -> tuple[RecordedCommand, ...] | None:
-        times = [t for t, _, _ in value or ()]
-        for k, (one, two) in enumerate(pairwise(times)):
-            if two <= one:
-                raise ValueError(
-                    f"times must rise; command {k + 2} is at {two:g} s, not after {one:g} s"
-                )
-        return value
+    _in_order = field_validator("recorded")(in_order)
 
     @model_validator(mode="after")
     def _one_driver(self) -> JoystickSpec:

@@ -31,18 +31,8 @@ class Joystick(DescribedSensor):
         self._most = spec.max_speed or limits.v_max, spec.max_yaw_rate or limits.w_max
         self._recorded = spec.recorded or ()
         self._from = [t for t, _, _ in self._recorded]
-        self._info = SensorInfo(
-            category="joystick",
-            frame="joystick",
-            mount=(0.0, 0.0, 0.0, 0.0),
-            rate=spec.rate,
-            shape=(2,),
-            ros_type="geometry_msgs/msg/TwistStamped",
-            message=SensorMessage(fields=twist, topic="cmd_vel"),
-            memory=4,
-            random=spec.noise > 0.0 and not self._recorded,
-            sees=False,
-        )
+        random = spec.noise > 0.0 and not self._recorded
+        self._info = stick_info(spec.rate, memory=4, random=random, sees=False)
 
     def read(
         self, scene: Scene, pose: Pose, t: float, rng: np.random.Generator, memory: Array
@@ -56,7 +46,7 @@ class Joystick(DescribedSensor):
         ahead, aside = self._deflection(pose)
         noise, (v, w) = self._spec.noise, self._most
         return np.array(
-            [v * _full(ahead + noise * memory[AHEAD]), w * _full(aside + noise * memory[ASIDE])]
+            [v * full(ahead + noise * memory[AHEAD]), w * full(aside + noise * memory[ASIDE])]
         )
 
     def _played(self, t: float) -> Array:
@@ -70,7 +60,7 @@ class Joystick(DescribedSensor):
         off = math.remainder(math.atan2(y, x) - pose.yaw, 2.0 * math.pi)
         near = min(1.0, math.hypot(x, y) / self._spec.slow_distance)
         aside = self._spec.steering * off / self._most[1]
-        return near * max(0.0, math.cos(off)), near * _full(aside)
+        return near * max(0.0, math.cos(off)), near * full(aside)
 
     def _tremble(self, memory: Array, t: float, rng: np.random.Generator) -> None:
         """Advance the hand's error to time t."""
@@ -80,6 +70,22 @@ class Joystick(DescribedSensor):
         fresh = math.sqrt(1.0 - stays * stays) * rng.standard_normal(2)
         memory[AHEAD : ASIDE + 1] = stays * memory[AHEAD : ASIDE + 1] + fresh
         memory[STARTED], memory[TIME] = 1.0, t
+
+
+def stick_info(rate: float, *, memory: int, random: bool, sees: bool) -> SensorInfo:
+    """Return the description of a sensor that reads v (m/s) and w (rad/s) from a driver."""
+    return SensorInfo(
+        category="joystick",
+        frame="joystick",
+        mount=(0.0, 0.0, 0.0, 0.0),
+        rate=rate,
+        shape=(2,),
+        ros_type="geometry_msgs/msg/TwistStamped",
+        message=SensorMessage(fields=twist, topic="cmd_vel"),
+        memory=memory,
+        random=random,
+        sees=sees,
+    )
 
 
 def twist(values: Array) -> dict[str, Any]:
@@ -93,8 +99,8 @@ def twist(values: Array) -> dict[str, Any]:
     }
 
 
-def _full(deflection: float) -> float:
-    """Limit a deflection to -1..1."""
+def full(deflection: float) -> float:
+    """Return a deflection, limited to -1..1."""
     return min(1.0, max(-1.0, deflection))
 
 

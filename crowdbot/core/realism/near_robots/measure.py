@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
+from crowdbot.core.realism.json_numbers import rounded
 from crowdbot.core.realism.near_robots.compare import Similarity, similarity
 from crowdbot.core.realism.near_robots.encounters import RobotEncounter
 from crowdbot.core.realism.near_robots.features import features_of
@@ -16,6 +15,8 @@ from crowdbot.core.realism.near_robots.replay import Response, walk_all
 from crowdbot.core.realism.near_robots.statistics import Cell, CellStatistics, statistics_of
 from crowdbot.errors import InputError
 
+#: Names of a cell's numbers.
+_SCORES = ("index", "score", "ceiling", "floor")
 #: Draws of scenes and attention.
 SEEDS = (1, 2)
 
@@ -60,17 +61,16 @@ class RobotRealism:
         """Return plain data for JSON."""
         return {
             "response": self.name,
-            "index": _rounded(self.index),
-            "score": _rounded(self.score),
-            "ceiling": _rounded(self.ceiling),
-            "floor": _rounded(self.floor),
-            "parts": {n: {"own": _rounded(a), "ignoring": _rounded(b)}
+            "index": rounded(self.index, 4),
+            "score": rounded(self.score, 4),
+            "ceiling": rounded(self.ceiling, 4),
+            "floor": rounded(self.floor, 4),
+            "parts": {n: {"own": rounded(a, 4), "ignoring": rounded(b, 4)}
                       for n, (a, b) in self.parts.items()},
             "cells": {
                 "/".join(cell): {
                     "recorded": self.reference.whole[cell].count,
-                    **dict(zip(("index", "score", "ceiling", "floor"),
-                               map(_rounded, values), strict=True)),
+                    **{n: rounded(v, 4) for n, v in zip(_SCORES, values, strict=True)},
                 }
                 for cell, values in self.cells.items()
             },
@@ -148,7 +148,3 @@ def _cells(
 
 def _index(score: float, floor: float, ceiling: float) -> float:
     return (score - floor) / (ceiling - floor) if ceiling > floor else float("nan")
-
-
-def _rounded(value: float) -> float | None:
-    return round(float(value), 4) if np.isfinite(value) else None

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from crowdbot.core.realism.json_numbers import number_or_nan, rounded
 from crowdbot.core.realism.near_robots.encounters import VEHICLE, RobotEncounter
 from crowdbot.core.realism.near_robots.features import FEATURES, SHARES
 from crowdbot.core.types.arrays import Array
@@ -43,8 +44,8 @@ class CellStatistics:
         """Return data that `from_json` reads."""
         return {
             "count": self.count,
-            "quantiles": {n: [_rounded(v) for v in q] for n, q in self.quantiles.items()},
-            "shares": {n: _rounded(v) for n, v in self.shares.items()},
+            "quantiles": {n: [rounded(v, 3) for v in q] for n, q in self.quantiles.items()},
+            "shares": {n: rounded(v, 3) for n, v in self.shares.items()},
         }
 
     @classmethod
@@ -52,8 +53,10 @@ class CellStatistics:
         """Read data from `as_json`."""
         return cls(
             count=int(data["count"]),
-            quantiles={n: np.array([_number(v) for v in q]) for n, q in data["quantiles"].items()},
-            shares={n: _number(v) for n, v in data["shares"].items()},
+            quantiles={
+                n: np.array([number_or_nan(v) for v in q]) for n, q in data["quantiles"].items()
+            },
+            shares={n: number_or_nan(v) for n, v in data["shares"].items()},
         )
 
 
@@ -86,11 +89,3 @@ def _cell(rows: Array) -> CellStatistics:
         else:
             quantiles[name] = np.quantile(known, LEVELS) if enough else np.full(len(LEVELS), np.nan)
     return CellStatistics(count=len(rows), quantiles=quantiles, shares=shares)
-
-
-def _rounded(value: float) -> float | None:
-    return round(float(value), 3) if np.isfinite(value) else None
-
-
-def _number(value: float | None) -> float:
-    return float("nan") if value is None else float(value)

@@ -85,9 +85,7 @@ def _speeds(name: str, t: Array, x: Array, y: Array, limit: float) -> Iterator[s
 
 def _median_speed(t: Array, x: Array, y: Array) -> float | None:
     """Return the median speed of moving bodies, m/s; None if too few move."""
-    with np.errstate(invalid="ignore"):
-        steps = np.hypot(np.diff(x, axis=0), np.diff(y, axis=0))
-        speeds = steps / np.diff(t).reshape(-1, *([1] * (x.ndim - 1)))
+    steps, speeds = jumps.steps_and_speeds(t, x, y)
     speeds = speeds[np.isfinite(speeds) & (steps > 0.0)]
     return float(np.median(speeds)) if len(speeds) >= _FEW else None
 

@@ -28,9 +28,7 @@ def findings(
         x, y: places (N,) or (N, M), m; NaN where absent.
         recorded: steps (N-1, M) that were recorded as teleports, which are none of these.
     """
-    with np.errstate(invalid="ignore"):
-        steps = np.hypot(np.diff(x, axis=0), np.diff(y, axis=0))
-        speeds = steps / np.diff(t).reshape(-1, *([1] * (x.ndim - 1)))
+    steps, speeds = steps_and_speeds(t, x, y)
     absent = nowhere(x, y)
     known = np.isfinite(speeds) & (absent[1:] == absent[:-1])  # places left out are told by others
     if recorded is not None:
@@ -47,6 +45,18 @@ def findings(
     seen = f"{name}: {count} jump{'s' if count > 1 else ''}"
     where = f"{'the longest ' if count > 1 else ''}of {steps[k]:.3g} m at t = {t[k[0] + 1]:.6g} s"
     yield f"{seen}, {where}: {_meaning(name)} {_scored(speeds[jumps])}"
+
+
+def steps_and_speeds(t: Array, x: Array, y: Array) -> tuple[Array, Array]:
+    """Return the steps between samples, m, and their speeds, m/s; NaN where a place is missing.
+
+    Args:
+        t: times (N,), s.
+        x, y: places (N,) or (N, M), m.
+    """
+    with np.errstate(invalid="ignore"):
+        steps = np.hypot(np.diff(x, axis=0), np.diff(y, axis=0))
+        return steps, steps / np.diff(t).reshape(-1, *([1] * (x.ndim - 1)))
 
 
 def nowhere(x: Array, y: Array) -> Mask:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from crowdbot.core.trajectories.plausibility.jumps import steps_and_speeds
 from crowdbot.core.types.arrays import Array
 
 #: Largest radius, m, and mass, kg, of a person (a wheelchair or a cart included).
@@ -57,9 +58,7 @@ def creeping(t: Array, name: str, x: Array, y: Array) -> Iterator[str]:
     if len(t) < _FEW:
         return
     x, y = x.reshape(len(t), -1), y.reshape(len(t), -1)
-    with np.errstate(invalid="ignore"):
-        steps = np.hypot(np.diff(x, axis=0), np.diff(y, axis=0))
-        speeds = steps / np.diff(t)[:, np.newaxis]
+    steps, speeds = steps_and_speeds(t, x, y)
     moving = np.isfinite(speeds) & (steps > 0.0)
     if np.count_nonzero(moving) < _FEW:
         return

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Annotated, Literal
 
 from annotated_types import MinLen
 from pydantic import Field, field_validator
 
 from crowdbot.plugin import Component, CrowdPolicySpec, NonNegativeDuration, Quantity, default
+from crowdbot.plugins.sensors.joystick import in_order
 
 _Velocity = Annotated[float, Quantity("speed")]
 #: Start time of a command, s; velocity x, y in the world frame, m/s.
@@ -33,16 +33,7 @@ class WalkerSpec(CrowdPolicySpec):
         strict=False,
     )
 
-    @field_validator("recorded")
-    @classmethod
-    def _in_order(cls, value: tuple[WalkCommand, ...] | None) -> tuple[WalkCommand, ...] | None:
-        times = [t for t, _, _ in value or ()]
-        for k, (one, two) in enumerate(pairwise(times)):
-            if two <= one:
-                raise ValueError(
-                    f"times must rise; command {k + 2} is at {two:g} s, not after {one:g} s"
-                )
-        return value
+    _in_order = field_validator("recorded")(in_order)
 
 
 WALKER = Component(

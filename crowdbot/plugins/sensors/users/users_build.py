@@ -12,11 +12,11 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 
-from crowdbot.plugin import Array, Pose, Scene, SensorContext, SensorInfo, SensorMessage
+from crowdbot.plugin import Array, Pose, Scene, SensorContext
 from crowdbot.plugins.sensors.described_build import DescribedSensor
-from crowdbot.plugins.sensors.joystick_build import twist
+from crowdbot.plugins.sensors.joystick_build import full, stick_info
 from crowdbot.plugins.sensors.users.users import FatiguedUserSpec, OneSwitchUserSpec, UserSpec
-from crowdbot.plugins.sensors.users.wish_build import Wish, full, wish
+from crowdbot.plugins.sensors.users.wish_build import Wish, wish
 
 #: Head of the memory: 1 after a reading, its time, its values.
 STARTED, TIME, V, W, HEAD = range(5)
@@ -34,17 +34,8 @@ class SyntheticUser(DescribedSensor, ABC):
         self._user, self._body = spec, body
         self._goal = spec.goal or context.task.goal
         self._most = spec.max_speed or limits.v_max, spec.max_yaw_rate or limits.w_max
-        self._info = SensorInfo(
-            category="joystick",
-            frame="joystick",
-            mount=(0.0, 0.0, 0.0, 0.0),
-            rate=spec.rate,
-            shape=(2,),
-            ros_type="geometry_msgs/msg/TwistStamped",
-            message=SensorMessage(fields=twist, topic="cmd_vel"),
-            memory=HEAD + memory,
-            random=random,
-            sees=spec.sight > 0.0,
+        self._info = stick_info(
+            spec.rate, memory=HEAD + memory, random=random, sees=spec.sight > 0.0
         )
 
     def read(

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crowdbot.plugin import Array, Pose, RobotBody, Scene
+from crowdbot.plugins.sensors.joystick_build import full
 from crowdbot.plugins.sensors.users.users import UserSpec
 
 #: Damping (1/s), stiffness of the goal (1/s^2) and its decay with distance (1/m) and floor;
@@ -67,11 +68,6 @@ def wish(
     near = min(1.0, far / spec.slow_distance)
     speed = min(max(0.0, math.cos(off)), gap / spec.gap_time / most[0])
     return Wish(near * speed, near * full(turn / most[1]), off, min(gap, far))
-
-
-def full(deflection: float) -> float:
-    """Clip a deflection to -1..1."""
-    return min(1.0, max(-1.0, deflection))
 
 
 def _seen(scene: Scene, pose: Pose, reach: float) -> Array:
