@@ -7,6 +7,7 @@ import logging
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from crowdbot.cli.output.described_robots import robot_faults
 from crowdbot.cli.output.say import say
 from crowdbot.errors import SpecError, UnknownNameError
 
@@ -59,7 +60,8 @@ def _check_all(
 
     try:
         expansion, files = open_suite(spec, registry, overrides)
-        return len(expansion.scenarios), list(_lock_problems(files))
+        faults = [*_lock_problems(files), *robot_faults(expansion, registry)]
+        return len(expansion.scenarios), faults
     except SpecError as error:
         return 0, list(error.diagnostics)
     except UnknownNameError as error:

@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Self, TypeVar, Unpack, cast
 from numpy.typing import ArrayLike
 
 import crowdbot.core.trajectories.own_recordings as own
+import crowdbot.core.trajectories.plausibility.times as times
 from crowdbot.core.support.arguments import mapping_of, number_of, path_of, point_of
 from crowdbot.core.trajectories.bag.tables import bag_tables
 from crowdbot.core.trajectories.data_sets.homography import Homography, in_metres
@@ -366,8 +367,9 @@ def _made(
     if "robot_x" in columns and None in (given["robot_radius"], given["robot_mass"]):
         raise InputError("a robot needs robot_radius (m) and robot_mass (kg), which tables lack")
     arrays = {"contacts": contacts, **given, **columns, "robot_goal_time": arrived}
-    run: _Run = cast(Any, cls).from_arrays(**arrays)
+    run: Any = cast(Any, cls).from_arrays(**arrays)
     notes = (note for table in tables.values() if table is not None for note in sentences(table))
-    for text in (*notes, *run.implausible()):
+    apart = run.agents is not None and tables.get("robot") is None and times.apart(run.agents.x)
+    for text in (*notes, *([apart] if apart else []), *run.implausible()):
         warnings.warn(text, RecordingWarning, stacklevel=4)
-    return run
+    return cast(_Run, run)

@@ -112,6 +112,7 @@ class RawTable:
         if unit is not None:
             least = next(size for size, ns in _SINCE_1970 if ns == unit)
             ticks = [self._ticks(column, i, cell, least) for i, cell in enumerate(cells)]
+            self._refuse_rounded(column, cells, ticks)
             return np.array(ticks) * unit
         if not any(_is_stamp(cell) for cell in cells[:1]):
             return None
@@ -137,6 +138,15 @@ class RawTable:
         times = np.array([self._number(column, i, cell) for i, cell in enumerate(cells)], float)
         self._all_there(column, np.isfinite(times))
         return times, False
+
+    def _refuse_rounded(self, column: str, cells: Cells, ticks: Sequence[int]) -> None:
+        """Refuse stamps that a spreadsheet has rounded: ``1.62766E+18`` in each row."""
+        rounded = isinstance(cells[0], str) and re.search(r"\de\+?\d", cells[0], re.IGNORECASE)
+        if rounded and len(ticks) > 2 and len(set(ticks)) < len(ticks) / 2:
+            raise InputError(
+                f"{self.where(1)}: {column} is {str(cells[0]).strip()} in row after row: a "
+                "spreadsheet has rounded the stamps; take the file from before it"
+            )
 
     def _refuse_clocks(self, column: str, cells: Cells) -> None:
         """Refuse ``10:00:00.5`` and ``1.5.2026 10:00:00``, since ISO 8601 has other stamps."""

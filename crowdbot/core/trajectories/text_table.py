@@ -257,6 +257,7 @@ _VISWALK = "$PEDESTRIAN:"
 #: How files begin that are not tables.
 _DOCUMENTS = {
     "{": "JSON", "[{": "JSON", "[[": "JSON", "<": "XML or HTML",
+    "header:": "what 'ros2 topic echo' prints of a bag, which from_rosbag reads",
     "NO_OF_FRAMES": "Qualisys' export of markers", "Format Version,": "Motive's export of markers",
 }  # fmt: skip
 #: First line that names the separator for spreadsheets.

@@ -1,4 +1,4 @@
-"""``crowdbot validate``: report every error of a document, without building anything."""
+"""``crowdbot validate``: report every error of a document; only robots from files are built."""
 
 from __future__ import annotations
 

@@ -75,10 +75,11 @@ def _speeds(name: str, t: Array, x: Array, y: Array, limit: float) -> Iterator[s
             "nearest to the place of the sample before: ids that change from sample to sample?"
         )
         return
+    whole = np.all(x == np.round(x), where=np.isfinite(x))
     units = {**_UNITS, **(_MINUTES if np.median(np.diff(t)) < _FASTEST else {})}
     unit, factor = min(units.items(), key=lambda item: abs(np.log(median / item[1] / USUAL)))
     yield (
-        f"{name}: median speed {median:.3g} m/s: {unit}? "
+        f"{name}: median speed {median:.3g} m/s: {unit}{', or in pixels' if whole else ''}? "
         f"Divided by {factor} it would be {median / factor:.3g} m/s"
     )
 

@@ -59,3 +59,24 @@ def _ticks(step: float, speed: float | None) -> tuple[str, float]:
         return abs(math.log(speed * rate / USUAL)) + (0.0 if within else 100.0)
 
     return min(_TICKS.items(), key=lambda item: off(item[1]))
+
+
+def apart(x: Array) -> str | None:
+    """Return a sentence if no two of several people who are there together share a sample.
+
+    Args:
+        x: (T, N) of people, NaN where absent.
+    """
+    there = np.isfinite(x)
+    if x.shape[1] < 2 or len(x) < 2 * x.shape[1] or there.sum(axis=1).max(initial=0) > 1:
+        return None
+    present = there.any(axis=0)
+    first = np.argmax(there, axis=0)[present]
+    last = len(x) - 1 - np.argmax(there[::-1], axis=0)[present]
+    together = int(np.max([np.sum((first <= k) & (last >= k)) for k in first], initial=0))
+    if together < 2:
+        return None
+    return (
+        f"people: {together} are there together, and no two at one time: a stamp for each row? "
+        "resample=10 brings them to common times"
+    )

@@ -36,6 +36,8 @@ _PEOPLE = {
 }
 #: Most columns that are told by name.
 _MOST_NAMED = 12
+#: Names of the sides of boxes.
+_SIDES = (("w", "h"), ("width", "height"), ("bb_width", "bb_height"))
 #: Least extent of x and z, m, if y seems to be the height.
 _FLAT = 0.5
 
@@ -80,7 +82,7 @@ def completed(
     kinds, others = _not_people(header, cells) if wide else ([], [])
     read = {*used, *kinds, *(header.index(c) for axes in people.values() for c in axes.values())}
     unused = [table.header[i] for i in range(len(header)) if i not in read]
-    notes = others + _height_is_y(table, header, cells)
+    notes = others + _height_is_y(table, header, cells) + (_boxes(table, header) if wide else [])
     table = replace(
         table,
         notes=[*table.notes, *(f"{table.name}: {note}" for note in notes)],
@@ -105,6 +107,20 @@ def _not_people(
                 "people; leave out those that are not"
             )
     return places, notes
+
+
+def _boxes(table: RawTable, header: Sequence[str]) -> list[str]:
+    """Return a sentence if x and y seem to be corners of boxes, such as those of detections."""
+    lower = {column.lower() for column in header}
+    if not {"x", "y"} <= lower & set(table.columns):
+        return []
+    sides = next((names for names in _SIDES if set(names) <= lower), None)
+    if sides is None:
+        return []
+    return [
+        f"x and y beside {' and '.join(sides)}: corners of boxes? People stand at "
+        f"x + {sides[0]}/2, y + {sides[1]}"
+    ]
 
 
 def _height_is_y(

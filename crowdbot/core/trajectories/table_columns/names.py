@@ -13,9 +13,19 @@ from crowdbot.errors import InputError, did_you_mean, nearest
 FRAMES = ("frame", "fr", "frames", "frame_id", "frameid", "frame_number")
 #: Our name -> other names that are usual, in lower case; taken if ours is not there.
 USUAL_NAMES: Mapping[str, Sequence[str]] = {
-    "t": ("time", "timestamp", "time_stamp", "stamp", "simsec", "simtime", *FRAMES),
-    "x": ("coordcentx", "startx", "pos_x", "position_x", "px", "tx", "xcenter"),
-    "y": ("coordcenty", "starty", "pos_y", "position_y", "py", "ty", "ycenter"),
+    "t": (
+        "time", "timestamp", "time_stamp", "stamp", "simsec", "simtime", "sim_time", "elapsed",
+        "elapsed_time", *FRAMES,
+    ),
+    **{
+        axis: (
+            f"coordcent{axis}", f"start{axis}", f"pos_{axis}", f"position_{axis}", f"p{axis}",
+            f"t{axis}", f"{axis}center", f"{axis}_center", f"center_{axis}", f"c{axis}",
+            f"{axis}_pos", f"{axis}pos", f"pos{axis}", f"{axis}_position", f"position{axis}",
+            f"{axis}_coord", f"coord_{axis}", f"loc_{axis}", f"{axis}_world", f"world_{axis}",
+        )
+        for axis in "xy"
+    },
     "vx": ("vel_x", "velocity_x", "v_x"),
     "vy": ("vel_y", "velocity_y", "v_y"),
     "theta": ("yaw", "heading"),
@@ -23,6 +33,7 @@ USUAL_NAMES: Mapping[str, Sequence[str]] = {
     "id": (
         "persid", "personid", "person_id", "ped_id", "pedestrian_id", "agent_id", "track_id",
         "pers", "person", "pedestrian", "pedestrianid", "agent", "agentid", "trackid", "human_id",
+        "pedid", "ped", "p_id", "human", "actor_id", "actor", "object_id", "obj_id",
     ),
 }  # fmt: skip
 #: Our name -> how fields of ROS messages end that mean the same.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -81,3 +82,53 @@ def test_frames_among_robots_have_the_stated_rate(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("# framerate: 16\nframe,id,x,y,radius\n" + "\n".join(rows))
     (clip,) = read_clips(tmp_path / "a.csv")
     assert clip.t[-1] - clip.t[0] == pytest.approx(63 / 16, abs=0.1)
+
+
+def test_columns_of_trackers_have_usual_names(tmp_path: Path) -> None:
+    """A tracker's export names centres, and numbers frames beside times and tracks."""
+    rows = [f"{k},{8 * k},{0.4 * k},7,{k}.5,{2 * k}.25,1" for k in range(6)]
+    (tmp_path / "a.csv").write_text(
+        "sample_index,frame,time_s,track_id,x_center,y_center,person_id\n" + "\n".join(rows)
+    )
+    table = people_table(tmp_path / "a.csv")
+    np.testing.assert_allclose(table.numbers("t"), 0.4 * np.arange(6))
+    np.testing.assert_allclose(table.numbers("y"), 2 * np.arange(6) + 0.25)
+    assert set(table.numbers("id")) == {1.0}
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "t,id,x,y,w,h\n" + "".join(f"{k},1,{k},0,50,90\n" for k in range(6)),
+            r"corners of boxes\? People stand at x \+ w/2, y \+ h",
+        ),
+        (
+            "t,id,x,y\n"
+            + "".join(f"{k + 0.01 * i},{i},{k},{i}\n" for k in range(4) for i in range(3)),
+            "3 are there together, and no two at one time: a stamp for each row",
+        ),
+        (
+            "t,id,x,y\n" + "".join(f"{k / 10},1,{90 * k},0\n" for k in range(9)),
+            "or in pixels",
+        ),
+    ],
+)
+def test_odd_tables_are_told(tmp_path: Path, text: str, message: str) -> None:
+    (tmp_path / "a.csv").write_text(text)
+    with pytest.warns(RecordingWarning) as caught:
+        Trajectories.from_csv(agents=tmp_path / "a.csv")
+    assert any(re.search(message, str(warning.message)) for warning in caught)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("header:\n  stamp:\n    sec: 3\n", "is what 'ros2 topic echo' prints"),
+        ("t,x,y\n" + "1.62766E+18,0,0\n" * 3, r"csv:3: t is 1\.62766E\+18 in row after row"),
+    ],
+)
+def test_tables_of_a_robot_that_are_none(tmp_path: Path, text: str, message: str) -> None:
+    (tmp_path / "a.csv").write_text(text)
+    with pytest.raises(InputError, match=message):
+        Trajectories.from_csv(tmp_path / "a.csv", robot_radius=0.2, robot_mass=5.0)
