@@ -37,7 +37,7 @@ from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.resolve import resolve_planner
 from crowdbot.core.recording.container.mcap_file import McapFile
 from crowdbot.core.recording.writer import RecordingWriter
-from crowdbot.core.robots import build_model
+from crowdbot.core.robots.build import build_model
 from crowdbot.core.robots.task import robot_task
 from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.scenarios.library import open_spec, pick

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.registry.registry import discover
-from crowdbot.core.robots import build_model
+from crowdbot.core.robots.build import build_model
 from crowdbot.core.robots.look import seen_from_above
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images" / "robots"

@@ -10,7 +10,7 @@ from PIL import Image
 
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.registry.registry import discover
-from crowdbot.core.robots import build_model
+from crowdbot.core.robots.build import build_model
 from crowdbot.core.sensing.other_robots import OtherRobot
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim.cameras.rendering import Renderer

@@ -26,7 +26,8 @@ from crowdbot.dsl.spec.component_specs import (
 from crowdbot.dsl.spec.range_sensor import RangeSensorSpec
 
 if TYPE_CHECKING:
-    from crowdbot.core.crowd.policy import Agents, CrowdPolicy
+    from crowdbot.core.crowd.agents import Agents
+    from crowdbot.core.crowd.policy import CrowdPolicy
     from crowdbot.core.crowd.velocity_search.cost import CompiledCost, NumpyCost
     from crowdbot.core.learning.build import Observer, Reward
     from crowdbot.core.learning.seen import LearningContext

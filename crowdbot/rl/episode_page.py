@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from crowdbot.core.batch.world import BatchWorld
-from crowdbot.core.replay import ShownRun
 from crowdbot.core.replay.page import write_replay
+from crowdbot.core.replay.shown_run import ShownRun
 from crowdbot.core.robots.look import seen_from_above
 from crowdbot.core.runs.replayed import scenery
 from crowdbot.core.runs.solids import SolidPeople, solids_of

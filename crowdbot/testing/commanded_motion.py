@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.robots import MODES, build_model
+from crowdbot.core.robots.build import MODES, build_model
 from crowdbot.core.support.ticks import TICK
 from crowdbot.core.types.environment import EnvironmentParts
 from crowdbot.core.types.motion import Command, Pose

@@ -26,8 +26,8 @@ from crowdbot.core.realism.near_robots.reference import reference_of
 from crowdbot.core.realism.page import render
 from crowdbot.core.realism.reference import shipped
 from crowdbot.core.registry.registry import discover
-from crowdbot.core.replay import write_replay
-from crowdbot.core.report import write_report
+from crowdbot.core.replay.page import write_replay
+from crowdbot.core.report.page import write_report
 from crowdbot.core.site.write import INDEX
 from crowdbot.core.studies.findings import compare
 from crowdbot.core.studies.report.report import write_study_report

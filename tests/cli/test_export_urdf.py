@@ -13,7 +13,7 @@ import pytest
 
 from crowdbot.cli import main
 from crowdbot.core.registry.registry import discover
-from crowdbot.core.robots import build_model
+from crowdbot.core.robots.build import build_model
 from crowdbot.core.robots.urdf_export import to_urdf
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.support.atomic_write import atomic_write

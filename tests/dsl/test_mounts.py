@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from crowdbot.core.registry.registry import discover
-from crowdbot.core.robots import build_model
+from crowdbot.core.robots.build import build_model
 from crowdbot.core.robots.urdf_export import to_urdf
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.sensing.build import build_sensor

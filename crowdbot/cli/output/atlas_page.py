@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from crowdbot.core.statistics import AtlasEntry
+    from crowdbot.core.statistics.atlas import AtlasEntry
 
 _INTRODUCTION = """# Atlas of scores
 

@@ -115,7 +115,7 @@ def _block(line: dict[str, Any], width: int) -> str:
 
 def with_interval(line: dict[str, Any]) -> dict[str, Any]:
     """Return a line of `line_of` with mean and interval in one cell, as in the report."""
-    from crowdbot.core.statistics import Estimate
+    from crowdbot.core.statistics.estimate import Estimate
     from crowdbot.core.statistics.estimate_text import joined_text, range_text
 
     bounds = line["least"], line["most"]

@@ -15,7 +15,7 @@ from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.population.realise import realise
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.robots import build_model
+from crowdbot.core.robots.build import build_model
 from crowdbot.core.robots.link_mount import at_link
 from crowdbot.core.robots.task import build_sensors, sensor_context
 from crowdbot.core.scenarios.lock import population

@@ -16,7 +16,7 @@ from crowdbot.core.bundle.verification import JUDGED
 from crowdbot.core.results.rows import place_of, processes
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, beside_main, name_of
-from crowdbot.core.statistics import OUTCOMES
+from crowdbot.core.statistics.estimate import OUTCOMES
 from crowdbot.core.statistics.estimate_text import NOTHING, estimate_text, range_text
 from crowdbot.core.statistics.pareto import label_heights, pareto
 from crowdbot.core.support.atomic_write import atomic_write

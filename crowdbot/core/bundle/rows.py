@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import fields
 
 from crowdbot.core.bundle.check import ClaimedRun
 from crowdbot.core.results.results import Results
@@ -25,17 +26,5 @@ def results_of(runs: Iterable[tuple[str, ClaimedRun]]) -> Results:
 
 
 def _score_row(run_id: str, score: Score) -> ScoreRow:
-    return ScoreRow(
-        run_id=run_id,
-        category=score.category,
-        metric=score.metric,
-        symbol=score.symbol,
-        variant=score.variant,
-        value=score.value,
-        unit=score.unit,
-        better=score.better,
-        status=score.status,
-        reason=score.reason,
-        lower=score.lower,
-        upper=score.upper,
-    )
+    same = (field.name for field in fields(ScoreRow) if field.name != "run_id")
+    return ScoreRow(run_id=run_id, **{name: getattr(score, name) for name in same})

@@ -12,11 +12,13 @@ from crowdbot.core.realism.crowds import lines_of
 from crowdbot.core.results.confounds import Finding, check_comparable, confounds
 from crowdbot.core.scoring.four_scores import PRIMARY
 from crowdbot.core.scoring.score_scale import Scales
-from crowdbot.core.statistics import PlannerScore, Summary, Table, sample_size, summarise
 from crowdbot.core.statistics.audit import Audit, suspicion
 from crowdbot.core.statistics.crowds import AXIS, CrowdRanks, crowd_ranks
 from crowdbot.core.statistics.ranking import SCORES
 from crowdbot.core.statistics.rules import RULE, Orders, orders
+from crowdbot.core.statistics.sample_size import sample_size
+from crowdbot.core.statistics.summary import PlannerScore, Summary, summarise
+from crowdbot.core.statistics.table import Table
 from crowdbot.errors import InputError
 
 #: Metrics that the ranking rule weighs up.

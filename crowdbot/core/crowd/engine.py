@@ -14,7 +14,7 @@ from crowdbot.core.crowd.agents import ONWARD, PORTAL, Agents
 from crowdbot.core.crowd.contact.robot_contact import DISC, R_W, RVX, RVY
 from crowdbot.core.crowd.contact.solid import LONGEST_STEP, MOST_OVERLAP, OUTSIDE
 from crowdbot.core.crowd.desired_acceleration import desired_acceleration, relaxation_time_of
-from crowdbot.core.crowd.groups import groups_of, hold_together
+from crowdbot.core.crowd.groups import forces_of, groups_of, hold_together
 from crowdbot.core.crowd.parameters import AgentParameters, Scratch, WorldParameters
 from crowdbot.core.crowd.periodic_boundary import images
 from crowdbot.core.crowd.policy import CONTACT_STIFFNESS, CrowdPolicy, CrowdView
@@ -123,7 +123,7 @@ class CrowdEngine:
         )
         self.goal_column = s.GOAL_X if self._router is None else s.WAYPOINT_X
         self._members, self._ends = groups_of(agents)
-        self._cohesion = None if world.cohesion is None else world.cohesion.forces
+        self._cohesion = None if world.cohesion is None else forces_of(world.cohesion)
         self.parameters = numbers_of(*self._people, *self._place, *Scratch.of(len(agents)))
         self._usual: dict[int, tuple[Indices, Array]] = {}
 

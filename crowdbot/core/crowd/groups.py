@@ -7,7 +7,6 @@ groups and its impact on crowd dynamics", PLoS ONE 5(4), 2010, e10047, equations
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,13 +18,14 @@ from crowdbot.core.crowd.state import (
 from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import Rows, record_type, record_values, rows_in
 from crowdbot.core.types.arrays import Array, Indices
+from crowdbot.dsl.scenario.group_forces import GroupForces
 
 #: Members farther away are out of sight and ignored; our value, m.
 SIGHT = 8.0
 
 
 class GroupForcesRecord:
-    """Parameters of `hold_together`, see `Cohesion`; half_view: half the field of view, rad."""
+    """Parameters of `hold_together`, see `GroupForces`; half_view: half the field of view, rad."""
 
     gaze: float
     cohesion: float
@@ -38,22 +38,10 @@ class GroupForcesRecord:
 _FORCES = record_type(GroupForcesRecord)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Cohesion:
-    """Strengths of the forces in groups, SI; see `crowdbot.dsl.scenario.group_forces`."""
-
-    gaze: float = 4.0
-    cohesion: float = 3.0
-    repulsion: float = 1.0
-    field_of_view: float = math.pi
-    distance: float = 0.8
-    limit: float = 3.0
-
-    @property
-    def forces(self) -> Rows[GroupForcesRecord]:
-        """Return the parameters (1,) for `hold_together`."""
-        numbers = record_values(_FORCES, self, half_view=0.5 * self.field_of_view)
-        return rows_in(numbers, _FORCES)
+def forces_of(spec: GroupForces) -> Rows[GroupForcesRecord]:
+    """Return the parameters (1,) for `hold_together`."""
+    numbers = record_values(_FORCES, spec, half_view=0.5 * spec.field_of_view)
+    return rows_in(numbers, _FORCES)
 
 
 def groups_of(agents: Agents) -> tuple[Indices, Indices]:
@@ -87,7 +75,7 @@ def hold_together(
         members, ends: see `groups_of`.
         most: (N,) largest acceleration by own will, m/s^2.
         boundary: (4,) x0, x1, y0, y1 of a torus, m; infinite elsewhere.
-        parameters: see `Cohesion.forces`.
+        parameters: see `forces_of`.
     """
     forces = parameters[0]
     for g in range(ends.shape[0] - 1):

@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.crowd.agents import LOOP, PORTAL, REMOVE, STOP, Agents
+from crowdbot.core.crowd.agents import Agents
 from crowdbot.core.crowd.periodic_boundary import Box, images
 from crowdbot.core.types.arrays import Array
 
@@ -110,16 +110,3 @@ class VelocityPolicy(Protocol):
 
 
 CrowdPolicy = AcceleratingPolicy | VelocityPolicy
-
-__all__ = [
-    "CONTACT_STIFFNESS",
-    "LOOP",
-    "PORTAL",
-    "REMOVE",
-    "STOP",
-    "AcceleratingPolicy",
-    "Agents",
-    "CrowdPolicy",
-    "CrowdView",
-    "VelocityPolicy",
-]

@@ -8,12 +8,12 @@ from typing import Literal
 import numpy as np
 
 from crowdbot.core.crowd.agents import PORTAL, Agents
-from crowdbot.core.crowd.groups import Cohesion
 from crowdbot.core.crowd.periodic_boundary import Box, images
 from crowdbot.core.crowd.response.parameters import Human
 from crowdbot.core.crowd.routing.parameters import WayFinding
 from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.types.arrays import Array
+from crowdbot.dsl.scenario.group_forces import GroupForces
 
 _COLUMNS = {"walls": 4, "pillars": 3, "entrance": 4, "out": 4}
 
@@ -60,7 +60,7 @@ class CrowdWorld:
     exit_point: Literal["random", "offset"] = "random"
     goal_point: Literal["random", "ahead"] = "random"
     response: Human = field(default_factory=Human)
-    cohesion: Cohesion | None = field(default_factory=Cohesion)
+    cohesion: GroupForces | None = field(default_factory=GroupForces)
     steering: Steering = field(default_factory=Steering)
     robot_visible: bool = True
     firm: bool = False

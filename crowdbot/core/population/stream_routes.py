@@ -13,7 +13,6 @@ from crowdbot.core.types.arrays import Point
 from crowdbot.dsl.scenario.crowd import AtGoal
 from crowdbot.dsl.scenario.streams import Lanes
 from crowdbot.dsl.spec.areas import Area, GoalArea
-from crowdbot.dsl.spec.outlines import along
 
 #: Goals of a walk from border to border; its shortest leg, as a part of the smaller side.
 _TURNS, _SHORTEST = 16, 0.4
@@ -136,14 +135,3 @@ def stroll(
         onward = list(areas[here].next) or [n for n in begin if n != here] or [here]
         names.append(onward[int(rng.integers(len(onward)))])
     return names
-
-
-__all__ = [
-    "Route",
-    "along",
-    "border_to_border",
-    "lane_of",
-    "route_through",
-    "straight_on",
-    "stroll",
-]

@@ -18,7 +18,6 @@ from crowdbot.core.population.placement import ATTEMPTS
 from crowdbot.core.population.stream_draw import StreamDraw
 from crowdbot.core.population.stream_routes import (
     Route,
-    along,
     border_to_border,
     lane_of,
     route_through,
@@ -36,6 +35,7 @@ from crowdbot.dsl.scenario.streams import (
     WanderingStream,
 )
 from crowdbot.dsl.spec.areas import Area
+from crowdbot.dsl.spec.outlines import along
 from crowdbot.errors import InputError
 
 _AT_GOAL: dict[str, AtGoal] = {

@@ -20,18 +20,14 @@ from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import RunRow, named_metrics
 from crowdbot.core.results.score_columns import metrics_of
 from crowdbot.core.scoring.score_scale import score_scales
-from crowdbot.core.statistics import (
-    FloorCheck,
-    SampleSize,
-    Table,
-    check_floors,
-    sample_size,
-)
 from crowdbot.core.statistics.audit import Audit, suspicion
 from crowdbot.core.statistics.crowds import AXIS, CrowdRanks, crowd_ranks
+from crowdbot.core.statistics.floors import FloorCheck, check_floors
 from crowdbot.core.statistics.ladder import Ladder, ladders
 from crowdbot.core.statistics.pareto import ParetoPoint, label_heights, pareto
 from crowdbot.core.statistics.rules import Orders, orders
+from crowdbot.core.statistics.sample_size import SampleSize, sample_size
+from crowdbot.core.statistics.table import Table
 from crowdbot.core.types.ending import shown
 from crowdbot.errors import InputError
 

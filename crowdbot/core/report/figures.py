@@ -18,18 +18,13 @@ from numpy.typing import NDArray
 from crowdbot.core.report.series import Series
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.score_columns import different
-from crowdbot.core.statistics import (
-    Comparison,
-    Estimate,
-    Name,
-    Summary,
-    Table,
-    draws_needed,
-    headline_names,
-    summarise,
-)
 from crowdbot.core.statistics.axes import REALISED_DENSITY
+from crowdbot.core.statistics.comparison import Comparison
+from crowdbot.core.statistics.estimate import Estimate
+from crowdbot.core.statistics.sample_size import draws_needed
+from crowdbot.core.statistics.summary import Summary, headline_names, summarise
 from crowdbot.core.statistics.summary_estimator import planner_mean
+from crowdbot.core.statistics.table import Name, Table
 
 #: Fields of a comparison that the page gets, in this order.
 FIELDS = (

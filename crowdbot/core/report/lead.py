@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from crowdbot.core.scoring.four_scores import MAIN_SCORES
-from crowdbot.core.statistics import PlannerScore, Summary
 from crowdbot.core.statistics.sample_size import SampleSize
+from crowdbot.core.statistics.summary import PlannerScore, Summary
 from crowdbot.core.support.text import listed
 
 _ARROWS = {"higher": "higher is better", "lower": "lower is better"}

@@ -8,11 +8,12 @@ from collections.abc import Sequence
 from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.methods import methods
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, is_main
-from crowdbot.core.statistics import Comparison, PlannerScore, Summary
+from crowdbot.core.statistics.comparison import Comparison
 from crowdbot.core.statistics.crowds import CrowdRanks
 from crowdbot.core.statistics.estimate_text import joined_text, range_text
 from crowdbot.core.statistics.ladder import Ladder
 from crowdbot.core.statistics.rules import Orders
+from crowdbot.core.statistics.summary import PlannerScore, Summary
 from crowdbot.core.support.text import plural
 
 

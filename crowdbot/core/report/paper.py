@@ -14,8 +14,9 @@ from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.lead import LeadColumn, main_columns
 from crowdbot.core.report.methods import methods
 from crowdbot.core.scoring.four_scores import PRIMARY
-from crowdbot.core.statistics import Comparison, Summary
+from crowdbot.core.statistics.comparison import Comparison
 from crowdbot.core.statistics.estimate_text import estimate_text
+from crowdbot.core.statistics.summary import Summary
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.core.support.text import plural
 

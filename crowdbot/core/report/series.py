@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from crowdbot.core.scoring.four_scores import FOUR_SCORES, beside_main, main_first
-from crowdbot.core.statistics import Table, headline_names
+from crowdbot.core.statistics.summary import headline_names
 from crowdbot.core.statistics.summary_estimator import Centre, centre_of
+from crowdbot.core.statistics.table import Table
 
 #: Categories that come first; the others follow by name.
 _FIRST = (

@@ -16,8 +16,9 @@ from crowdbot.core.recording.reading.images import (
 )
 from crowdbot.core.recording.reading.scans import REPLAY_RATE
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.replay import OtherTrack, Scenery, ShownRun
-from crowdbot.core.robots import build_robot
+from crowdbot.core.replay.other_track import OtherTrack
+from crowdbot.core.replay.shown_run import Scenery, ShownRun
+from crowdbot.core.robots.build import build_robot
 from crowdbot.core.robots.look import seen_from_above
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files

@@ -12,7 +12,6 @@ from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld
 from crowdbot.core.crowd.agents import LOOP, ONWARD, PORTAL, REMOVE, RETURN, STOP
 from crowdbot.core.crowd.build import build_cost, build_policy
 from crowdbot.core.crowd.engine import PolicyFactory
-from crowdbot.core.crowd.groups import Cohesion
 from crowdbot.core.crowd.response.from_spec import response_of
 from crowdbot.core.crowd.routing.from_spec import routing_of
 from crowdbot.core.crowd.steering.parameters import Steering
@@ -157,7 +156,7 @@ def _world(
         exit_point=crowd.exit_point,
         goal_point=crowd.goal_point,
         response=response_of(response),
-        cohesion=None if crowd.groups is None else Cohesion(**crowd.groups.model_dump()),
+        cohesion=crowd.groups,
         steering=Steering(
             crowd.steering or SteeringSpec(),
             key=stream_seed(crowd.seed.root, crowd.seed.key, "crowd.wander"),

@@ -11,7 +11,7 @@ from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.resolve import PlannerChoice, select_sensors
 from crowdbot.core.recording.writer import EXACT
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.robots import build_robot
+from crowdbot.core.robots.build import build_robot
 from crowdbot.core.robots.task import build_sensors, sensor_context
 from crowdbot.core.robots.urdf_export import check_frames
 from crowdbot.core.sensing.sensor import Sensor, SensorWithMemory

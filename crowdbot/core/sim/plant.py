@@ -24,7 +24,7 @@ from pydrake.multibody.tree import (
 )
 from pydrake.systems.framework import DiagramBuilder
 
-from crowdbot.core.robots import Description, read_description
+from crowdbot.core.robots.description import Description, read_description
 from crowdbot.core.robots.simplify import simplified
 from crowdbot.core.sim.drake_failures import drake_failures
 from crowdbot.core.support.ticks import TICK

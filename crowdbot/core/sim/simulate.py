@@ -18,7 +18,7 @@ from crowdbot.core.recording.reading.images import ImageCollector
 from crowdbot.core.recording.reading.scans import REPLAY_RATE
 from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.replay import write_replay
+from crowdbot.core.replay.page import write_replay
 from crowdbot.core.runs import provenance
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.excused import excuse_of, with_draw

@@ -11,7 +11,7 @@ from crowdbot.core.bundle.archive import open_archive
 from crowdbot.core.bundle.check_run import ClaimedRun
 from crowdbot.core.bundle.entries import LeaderboardEntry
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.replay import write_replay
+from crowdbot.core.replay.page import write_replay
 from crowdbot.core.runs import run_directory as files
 from crowdbot.core.runs.replayed import replayed_runs
 from crowdbot.core.scoring.four_scores import PRIMARY

@@ -202,6 +202,3 @@ def take_part(site: Site) -> list[tuple[str, str]]:
             f"{bundle} --team 'Us' --out us.cbz --check",
         ),
     ]
-
-
-__all__ = ["INDEX", "LEADERBOARD", "Site", "take_part", "write_site"]

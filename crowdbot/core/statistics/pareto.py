@@ -123,6 +123,3 @@ def _x(value: float) -> float:
 
 def _y(value: float) -> float:
     return round(HEIGHT - _BELOW - value * (HEIGHT - _BELOW - _EDGE), 1)
-
-
-__all__ = ["HEIGHT", "WIDTH", "ParetoPoint", "label_heights", "pareto"]

@@ -13,7 +13,7 @@ from crowdbot.core.environments.build import build_environment
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.population.realisation import Realisation
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.robots import build_model
+from crowdbot.core.robots.build import build_model
 from crowdbot.core.types.arrays import Point
 from crowdbot.core.view.map_content import MapContent, RobotView, Sector
 from crowdbot.core.view.ways import ways_of

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.crowd.policy import Agents, CrowdView
+from crowdbot.core.crowd.agents import Agents
+from crowdbot.core.crowd.policy import CrowdView
 from crowdbot.plugin import CostFunctionSpec
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
 from crowdbot.plugins.crowd.cost_functions.ttca_dca.ttca_dca import TtcaDcaSpec

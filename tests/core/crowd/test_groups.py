@@ -12,13 +12,14 @@ from hypothesis import strategies as st
 
 from crowdbot.core.crowd import Agents, CrowdEngine, CrowdWorld
 from crowdbot.core.crowd import state as s
-from crowdbot.core.crowd.groups import Cohesion, groups_of, hold_together
+from crowdbot.core.crowd.groups import forces_of, groups_of, hold_together
 from crowdbot.core.crowd.periodic_boundary import ENDLESS
 from crowdbot.core.crowd.policy import CrowdView
 from crowdbot.core.support.records import rows_in
 from crowdbot.core.types.arrays import Array
+from crowdbot.dsl.scenario.group_forces import GroupForces
 
-FORCES = Cohesion(limit=100.0)
+FORCES = GroupForces(limit=100.0)
 
 
 def rows_at(places: list[tuple[float, float]], velocity: tuple[float, float] = (1.0, 0.0)) -> Array:
@@ -30,11 +31,11 @@ def rows_at(places: list[tuple[float, float]], velocity: tuple[float, float] = (
     return rows
 
 
-def pulled(rows: Array, forces: Cohesion = FORCES, boundary: Array = ENDLESS) -> Array:
+def pulled(rows: Array, forces: GroupForces = FORCES, boundary: Array = ENDLESS) -> Array:
     count = len(rows)
     everybody = np.arange(count), np.array([0, count])
     hold_together(
-        rows_in(rows, s.PERSON), *everybody, np.full(count, 100.0), boundary, forces.forces
+        rows_in(rows, s.PERSON), *everybody, np.full(count, 100.0), boundary, forces_of(forces)
     )
     return rows[:, s.AX : s.AY + 1]
 
@@ -81,7 +82,7 @@ def test_the_sum_keeps_to_the_limits() -> None:
     rows[:, s.AX] = 5.0
     hold_together(
         rows_in(rows, s.PERSON), np.array([0, 1]), np.array([0, 2]), np.array([5.0, 5.0]), ENDLESS,
-        Cohesion().forces,
+        forces_of(GroupForces()),
     )  # fmt: skip
     assert np.hypot(rows[:, s.AX], rows[:, s.AY]).max() <= 5.0 + 1e-9
 
@@ -119,8 +120,8 @@ class Straight:
         return np.asarray(pace * to / np.hypot(to[:, :1], to[:, 1:]))
 
 
-@pytest.mark.parametrize(("cohesion", "together"), [(Cohesion(), True), (None, False)])
-def test_a_slow_member_is_waited_for(cohesion: Cohesion | None, *, together: bool) -> None:
+@pytest.mark.parametrize(("cohesion", "together"), [(GroupForces(), True), (None, False)])
+def test_a_slow_member_is_waited_for(cohesion: GroupForces | None, *, together: bool) -> None:
     given: dict[str, Any] = {"routes": [[(99.0, 0.0)], [(99.0, 0.7)]], "group": [1, 1]}
     agents = Agents.of(x=[0.0, 0.0], y=[0.0, 0.7], preferred_speed=[1.4, 0.9], **given)
     crowd = CrowdEngine(agents, CrowdWorld(cohesion=cohesion), Straight())

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crowdbot.core.crowd.policy import PORTAL
+from crowdbot.core.crowd.agents import PORTAL
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.population.realise import realise
 from crowdbot.core.sim.build_crowd import build_crowd

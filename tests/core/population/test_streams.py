@@ -14,10 +14,11 @@ from hypothesis import strategies as st
 from crowdbot.core.population.arrivals import arrival_times
 from crowdbot.core.population.realisation import COLUMNS, Realisation
 from crowdbot.core.population.realise import realise
-from crowdbot.core.population.stream_routes import along, border_to_border
+from crowdbot.core.population.stream_routes import border_to_border
 from crowdbot.dsl.scenario.agent_tables import join_tables, split_tables
 from crowdbot.dsl.scenario.stream import Arrivals
 from crowdbot.dsl.spec.areas import Area
+from crowdbot.dsl.spec.outlines import along
 from crowdbot.errors import InputError
 from tests.core.population.spawning_cases import AREAS, REGISTRY, gaps, hall
 

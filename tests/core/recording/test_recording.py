@@ -18,7 +18,8 @@ from crowdbot.core.recording.reading.scans import REPLAY_RATE, Thinning
 from crowdbot.core.recording.recording import Recording
 from crowdbot.core.recording.viewers import PEOPLE_RATE
 from crowdbot.core.recording.writer import RecordingWriter
-from crowdbot.core.replay import ShownRun, write_replay
+from crowdbot.core.replay.page import write_replay
+from crowdbot.core.replay.shown_run import ShownRun
 from crowdbot.core.runs.provenance import trajectory_hash
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError, UnknownNameError

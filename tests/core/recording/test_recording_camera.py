@@ -16,7 +16,7 @@ from rosbags.typesys import Stores, get_typestore
 from crowdbot.core.recording.header import RecordingHeader, RobotHeader
 from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.registry.registry import discover
-from crowdbot.core.robots import build_model
+from crowdbot.core.robots.build import build_model
 from crowdbot.core.robots.urdf_export import to_urdf
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.sensing.build import build_sensor

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.recording.reading.images import ReplayImages
-from crowdbot.core.replay import ReplayScan, Scenery, ShownRun
+from crowdbot.core.recording.reading.scans import ReplayScan
+from crowdbot.core.replay.shown_run import Scenery, ShownRun
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score
 

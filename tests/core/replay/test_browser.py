@@ -16,7 +16,8 @@ from matplotlib.image import imread
 from PIL import Image
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from crowdbot.core.replay import OtherTrack, write_replay
+from crowdbot.core.replay.other_track import OtherTrack
+from crowdbot.core.replay.page import write_replay
 from tests.browser import PROGRAM, Visit, axe_findings, needs_axe, needs_browser
 from tests.core.replay.replay_cases import ARRIVED_AT, CONTACT_AT, NEAR_AT, passing
 from tests.core.replay.test_replay import EVIL

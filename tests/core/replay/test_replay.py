@@ -15,9 +15,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from crowdbot.core.recording.reading.scans import ReplayScan
 from crowdbot.core.recording.recording import Recording
-from crowdbot.core.replay import OtherTrack, ReplayScan, ShownRun, write_replay
 from crowdbot.core.replay.encode import encode, summary
+from crowdbot.core.replay.other_track import OtherTrack
+from crowdbot.core.replay.page import write_replay
+from crowdbot.core.replay.shown_run import ShownRun
 from crowdbot.core.replay.three import three_source
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score

@@ -12,7 +12,7 @@ from playwright.sync_api import sync_playwright
 from crowdbot.core.figures.figure import load_figure
 from crowdbot.core.figures.shown import shown_figure
 from crowdbot.core.recording.reading.one_robot import PlannerDrawing
-from crowdbot.core.replay import write_replay
+from crowdbot.core.replay.page import write_replay
 from tests.browser import PROGRAM, Visit, needs_browser
 from tests.core.figures.small_gltf import write
 from tests.core.replay.replay_cases import passing

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from crowdbot.core.live.person.page import render_person_page
-from crowdbot.core.replay import write_replay
+from crowdbot.core.replay.page import write_replay
 from crowdbot.core.replay.three import three_packed, three_source
 from tests.core.replay.replay_cases import passing
 from tests.paths import ROOT

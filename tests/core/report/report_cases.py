@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from crowdbot.core.registry.registry import discover
-from crowdbot.core.report import Contents, Heading, gather
+from crowdbot.core.report.contents import Contents, Heading, gather
 from crowdbot.core.results.failure import Failure
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import RunRow, ScoreRow

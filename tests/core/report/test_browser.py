@@ -16,10 +16,11 @@ import pytest
 from numpy.typing import NDArray
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from crowdbot.core.report import Contents, write_report
+from crowdbot.core.report.contents import Contents
+from crowdbot.core.report.page import write_report
 from crowdbot.core.results.rows import RunRow
 from crowdbot.core.runs.record_parts import MomentPart
-from crowdbot.core.statistics import Estimate
+from crowdbot.core.statistics.estimate import Estimate
 from crowdbot.core.statistics.estimate_text import estimate_text
 from tests.browser import PROGRAM, Visit, axe_findings, needs_axe, needs_browser
 from tests.core.report.report_cases import AXES, campaign, contents, full

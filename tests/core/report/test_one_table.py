@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from crowdbot.core.results.results import Results
-from crowdbot.core.statistics import Table
+from crowdbot.core.statistics.table import Table
 from tests.core.report.report_cases import contents
 from tests.core.statistics.test_floors import results
 

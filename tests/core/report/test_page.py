@@ -18,10 +18,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from crowdbot.core.report import write_report
 from crowdbot.core.report.cards import card, reference
 from crowdbot.core.report.markdown import markdown
-from crowdbot.core.report.page import render
+from crowdbot.core.report.page import render, write_report
 from crowdbot.core.report.tables import csv_parts
 from crowdbot.core.results.failure import Failure
 from crowdbot.core.results.results import Results

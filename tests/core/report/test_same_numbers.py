@@ -18,12 +18,13 @@ from crowdbot.cli.output.results_lines import line_of, with_interval
 from crowdbot.core.bundle.leaderboard import write_leaderboard
 from crowdbot.core.bundle.standings import standings
 from crowdbot.core.registry.registry import discover
-from crowdbot.core.report import Contents, write_report
+from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.markdown import markdown
+from crowdbot.core.report.page import write_report
 from crowdbot.core.results.results import Results
 from crowdbot.core.scoring.four_scores import SHOWN
 from crowdbot.core.scoring.score_scale import score_scales
-from crowdbot.core.statistics import Estimate, Table, headline_names
+from crowdbot.core.statistics.estimate import Estimate
 from crowdbot.core.statistics.estimate_text import (
     decimals_for,
     estimate_text,
@@ -31,6 +32,8 @@ from crowdbot.core.statistics.estimate_text import (
     number_text,
 )
 from crowdbot.core.statistics.groups import by_group
+from crowdbot.core.statistics.summary import headline_names
+from crowdbot.core.statistics.table import Table
 from tests.browser import PROGRAM, Visit, needs_browser
 from tests.core.report.report_cases import contents
 from tests.core.report.same_numbers import entries, metrics, random_results

@@ -11,7 +11,7 @@ from crowdbot.core.report.series import Series, all_series
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import ScoreRow
 from crowdbot.core.scoring.score_scale import ScoreScale
-from crowdbot.core.statistics import Table
+from crowdbot.core.statistics.table import Table
 from tests.core.statistics.made_up_results import run
 
 

@@ -6,7 +6,7 @@ import csv
 import io
 from dataclasses import replace
 
-from crowdbot.core.report import Contents
+from crowdbot.core.report.contents import Contents
 from crowdbot.core.report.tables import csv_parts
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import RunRow

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.registry.registry import discover
-from crowdbot.core.robots import build_robot
+from crowdbot.core.robots.build import build_robot
 from crowdbot.core.runs.solids import SolidPeople, solid_people, solids_of
 from crowdbot.core.scenarios.library import open_spec, pick
 from crowdbot.core.scenarios.lock import population

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 from crowdbot.core.registry.registry import Registry, discover
-from crowdbot.core.robots import build_model
+from crowdbot.core.robots.build import build_model
 from crowdbot.plugin import RobotModel
 from tests.paths import ROOT
 

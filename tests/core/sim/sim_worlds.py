@@ -20,7 +20,7 @@ from crowdbot.core.population.realise import realise
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.registry.registry import Registry, discover
-from crowdbot.core.robots import build_model
+from crowdbot.core.robots.build import build_model
 from crowdbot.core.robots.task import sensor_context
 from crowdbot.core.scenarios.library import open_document, open_spec, pick
 from crowdbot.core.sensing.build import build_sensor

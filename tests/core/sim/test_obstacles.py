@@ -8,7 +8,7 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantVectorSource
 
-from crowdbot.core.robots import build_model
+from crowdbot.core.robots.build import build_model
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sim.control.differential_drive import wheel_gains
 from crowdbot.core.sim.plant import add_plant, place_robot

@@ -20,7 +20,7 @@ from crowdbot.core.crowd.contact.robot_contact import ROBOT, robot_contact
 from crowdbot.core.crowd.traits import TRAITS
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.registry.registry import discover
-from crowdbot.core.robots import build_model
+from crowdbot.core.robots.build import build_model
 from crowdbot.core.sim.build_crowd import in_series
 from crowdbot.core.support.records import rows_in, rows_of
 from crowdbot.core.types.robot import RobotModel

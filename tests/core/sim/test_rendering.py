@@ -14,7 +14,7 @@ from crowdbot.cli import main
 from crowdbot.core.figures.figure import Figure, load_figure
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.registry.registry import discover
-from crowdbot.core.robots import build_model
+from crowdbot.core.robots.build import build_model
 from crowdbot.core.sensing.noise import sensor_rng
 from crowdbot.core.sensing.other_robots import OtherRobot
 from crowdbot.core.sensing.scene import Scene

@@ -14,7 +14,7 @@ from crowdbot.core.environments.build import build_environment
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.planning.resolve import resolve_planner
 from crowdbot.core.recording.recording import Recording
-from crowdbot.core.robots import build_model
+from crowdbot.core.robots.build import build_model
 from crowdbot.core.robots.check import check_model
 from crowdbot.core.runs.run_options import RunOptions
 from crowdbot.core.scenarios.lock import population

@@ -10,8 +10,7 @@ import pytest
 from crowdbot.cli.output.atlas_page import atlas_page
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import ScoreRow
-from crowdbot.core.statistics import atlas
-from crowdbot.core.statistics.atlas import rank_correlation
+from crowdbot.core.statistics.atlas import atlas, rank_correlation
 from crowdbot.errors import UnknownNameError
 from tests.core.results.made_up_record import changed
 from tests.core.statistics.made_up_results import run, score

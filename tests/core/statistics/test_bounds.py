@@ -16,9 +16,9 @@ from crowdbot.core.registry.registry import discover
 from crowdbot.core.results.results import Results
 from crowdbot.core.scoring.score_scale import ScoreScale, score_scales
 from crowdbot.core.statistics import clusters as c
-from crowdbot.core.statistics import summarise
 from crowdbot.core.statistics.clusters import Bounds, Clusters
 from crowdbot.core.statistics.groups import by_group
+from crowdbot.core.statistics.summary import summarise
 from crowdbot.core.statistics.summary_estimator import planner_mean, rate_difference
 from crowdbot.core.statistics.table import Table
 from tests.core.statistics.made_up_results import pairs, score

@@ -10,7 +10,8 @@ import pytest
 from crowdbot.core.results.failure import Failure
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import RunRow, ScoreRow
-from crowdbot.core.statistics import Comparison, summarise
+from crowdbot.core.statistics.comparison import Comparison
+from crowdbot.core.statistics.summary import summarise
 from tests.core.results.made_up_record import changed
 from tests.core.statistics.made_up_results import cells, censored, challenge, pairs, run, score
 

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from crowdbot.core.results.failure import Failure
 from crowdbot.core.results.results import Results
-from crowdbot.core.statistics import check_floors, summarise
-from crowdbot.core.statistics.floors import FloorCheck
+from crowdbot.core.statistics.floors import FloorCheck, check_floors
+from crowdbot.core.statistics.summary import summarise
 from tests.core.statistics.made_up_results import run, score
 
 ROLES = {

@@ -8,8 +8,9 @@ import pytest
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import ScoreRow
 from crowdbot.core.scoring.four_scores import MAIN_SCORES, PRIMARY, is_main, main_first
-from crowdbot.core.statistics import Table, headline_names, summarise
 from crowdbot.core.statistics.sign_flip import holm
+from crowdbot.core.statistics.summary import headline_names, summarise
+from crowdbot.core.statistics.table import Table
 from tests.built_in import built_in_metrics
 from tests.core.statistics.made_up_results import censored, run, score
 

@@ -9,7 +9,9 @@ import pytest
 
 from crowdbot.core.results.results import Results
 from crowdbot.core.scoring.score_scale import ScoreScale
-from crowdbot.core.statistics import Comparison, check_floors, summarise
+from crowdbot.core.statistics.comparison import Comparison
+from crowdbot.core.statistics.floors import check_floors
+from crowdbot.core.statistics.summary import summarise
 from tests.core.results.made_up_record import changed
 from tests.core.statistics.made_up_results import censored, pairs, run, score
 

@@ -9,10 +9,10 @@ import pytest
 from scipy import stats
 
 from crowdbot.core.results.results import Results
-from crowdbot.core.statistics import Table
 from crowdbot.core.statistics.clusters import Clusters
 from crowdbot.core.statistics.power import Power, power
 from crowdbot.core.statistics.sign_flip import p_value
+from crowdbot.core.statistics.table import Table
 from tests.core.statistics.made_up_results import pairs, run, score
 
 NAME = ("m", "corrected")

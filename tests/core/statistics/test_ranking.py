@@ -7,9 +7,9 @@ import pytest
 
 from crowdbot.core.results.results import Results
 from crowdbot.core.scoring.score_scale import ScoreScale
-from crowdbot.core.statistics import Table
 from crowdbot.core.statistics.ranking import rank
 from crowdbot.core.statistics.rules import orders
+from crowdbot.core.statistics.table import Table
 from tests.core.statistics.made_up_results import run, score
 
 SCALES = {

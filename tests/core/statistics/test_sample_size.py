@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crowdbot.core.statistics import draws_needed, sample_size, summarise
-from crowdbot.core.statistics.sample_size import least_draws
+from crowdbot.core.statistics.sample_size import draws_needed, least_draws, sample_size
+from crowdbot.core.statistics.summary import summarise
 from tests.core.statistics.made_up_results import pairs
 
 

@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from crowdbot.core.results.results import Results
-from crowdbot.core.statistics import Table, clusters, headline_names, summarise
+from crowdbot.core.statistics import clusters
 from crowdbot.core.statistics.clusters import Clusters
 from crowdbot.core.statistics.effect_size import effect_size
 from crowdbot.core.statistics.sign_flip import holm, p_value
+from crowdbot.core.statistics.summary import headline_names, summarise
+from crowdbot.core.statistics.table import Table
 from tests.core.statistics.made_up_results import (
     AXES,
     cells,

@@ -21,7 +21,7 @@ from crowdbot.core.support.text import plural
 from crowdbot.errors import InputError, UnknownNameError
 
 if TYPE_CHECKING:
-    from crowdbot.core.report import Contents
+    from crowdbot.core.report.contents import Contents
     from crowdbot.core.results.confounds import Finding
     from crowdbot.core.results.results import Results
     from crowdbot.core.statistics.audit import Audit
@@ -67,7 +67,9 @@ def report(
 
     Example: crowdbot report runs --suite challenge-2020 --planner 'dwa*' --out report.html
     """
-    from crowdbot.core.report import Heading, gather, write_paper, write_report
+    from crowdbot.core.report.contents import Heading, gather
+    from crowdbot.core.report.page import write_report
+    from crowdbot.core.report.paper import write_paper
     from crowdbot.core.results.chosen_planners import of_planners
     from crowdbot.core.results.confounds import check_comparable, confounds
     from crowdbot.core.results.with_reference import reference_results, with_reference

@@ -237,7 +237,7 @@ def atlas(
     Example: crowdbot results atlas --runs runs --floor goal_seek --md atlas.md
     """
     from crowdbot.cli.output.atlas_page import atlas_page
-    from crowdbot.core.statistics import atlas as entries_of
+    from crowdbot.core.statistics.atlas import atlas as entries_of
     from crowdbot.core.support.atomic_write import atomic_write
 
     found = with_scales(open_results(out, altered))

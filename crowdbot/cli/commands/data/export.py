@@ -287,7 +287,7 @@ def _need_pyarrow() -> None:
 def _description(run: Path) -> str | None:
     """Return the robot's URDF; None if its scenario names a plugin that is not installed."""
     from crowdbot.cli.shared.options import installed
-    from crowdbot.core.robots import build_model
+    from crowdbot.core.robots.build import build_model
     from crowdbot.core.robots.task import sensor_infos
     from crowdbot.core.robots.urdf_export import to_urdf
     from crowdbot.core.runs.run_directory import SCENARIO

@@ -75,7 +75,7 @@ def _inside(scenario: Scenario) -> list[tuple[float, float]]:
 def _height(scenario: Scenario, registry: object) -> float:
     """Return the height above which obstacles are left out, m: the top of the highest robot."""
     from crowdbot.core.registry.registry import Registry
-    from crowdbot.core.robots import build_model
+    from crowdbot.core.robots.build import build_model
 
     assert isinstance(registry, Registry)
     heights = [build_model(registry, r.model).height for r in scenario.robots.values()]

@@ -37,7 +37,7 @@ def export_urdf(
 
     Example: crowdbot export-urdf robot --spec challenge-2020 --out turtlebot2.urdf
     """
-    from crowdbot.core.robots import build_model
+    from crowdbot.core.robots.build import build_model
     from crowdbot.core.robots.task import sensor_infos
     from crowdbot.core.robots.urdf_export import to_urdf
     from crowdbot.core.support.atomic_write import atomic_write

@@ -21,7 +21,7 @@ from crowdbot.errors import InputError, UsageError
 
 if TYPE_CHECKING:
     from crowdbot.core.registry.registry import Registry
-    from crowdbot.core.replay import ShownRun
+    from crowdbot.core.replay.shown_run import ShownRun
     from crowdbot.core.view.shapes import Drawing
 
 _FORMATS = (".html", ".svg", ".png")
@@ -124,7 +124,7 @@ def _replay(
     if len(folders) == 1 and out is None and reference is None:
         return _own_page(folders[0])
     check_ending(out, ".html")
-    from crowdbot.core.replay import write_replay
+    from crowdbot.core.replay.page import write_replay
     from crowdbot.core.runs.replayed import replayed_runs
 
     shown = replayed_runs(folders, registry())

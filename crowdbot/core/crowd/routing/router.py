@@ -12,7 +12,7 @@ from crowdbot.core.crowd.agents import Agents
 from crowdbot.core.crowd.routing.packed_mesh import PackedMesh
 from crowdbot.core.crowd.routing.parameters import WayFinding
 from crowdbot.core.crowd.routing.route_map import RouteMap
-from crowdbot.core.crowd.routing.waypoints import Habits, find_waypoints
+from crowdbot.core.crowd.routing.waypoints import find_waypoints
 from crowdbot.core.types.arrays import Array
 
 #: Radii are rounded up to a multiple of this, so that few maps are needed, m.
@@ -36,9 +36,7 @@ class Router:
     def __init__(self, agents: Agents, walls: Array, pillars: Array, routing: WayFinding) -> None:
         points = np.concatenate([np.stack([agents.x, agents.y], axis=1), agents.route])
         self._agents = agents
-        self._habits = Habits(
-            routing.spread, routing.patience, routing.detour, np.uint64(routing.key)
-        )
+        self._habits = routing._replace(key=np.uint64(routing.key))
         self._classes = [
             _BodyClass(
                 np.flatnonzero(rounded(agents.radius) == size),
@@ -86,7 +84,7 @@ class _BodyClass:
         self._after = np.zeros((0, routes.count), np.int64)
 
     def find(
-        self, people: s.People, agents: Agents, habits: Habits, dt: float, decision: int
+        self, people: s.People, agents: Agents, habits: WayFinding, dt: float, decision: int
     ) -> None:
         for _ in range(len(self.members)):  # usually none has a new goal, now and then one
             changed = self._waypoints(people, agents, habits, dt, decision)
@@ -96,7 +94,7 @@ class _BodyClass:
         self._waypoints(people, agents, habits, dt, decision)
 
     def _waypoints(
-        self, people: s.People, agents: Agents, habits: Habits, dt: float, decision: int
+        self, people: s.People, agents: Agents, habits: WayFinding, dt: float, decision: int
     ) -> int:
         """Return 1 + the first member with a new goal; 0 after all waypoints are found."""
         fixed: tuple[Any, ...] = (*self._map, *habits)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from crowdbot.core.crowd.routing.corners import OUT_X, OUT_Y, ROOM
 from crowdbot.core.crowd.routing.corners import X as CORNER_X
 from crowdbot.core.crowd.routing.corners import Y as CORNER_Y
 from crowdbot.core.crowd.routing.packed_mesh import sight_in, table_in
+from crowdbot.core.crowd.routing.parameters import WayFinding
 from crowdbot.core.crowd.routing.sight import Sight, is_clear
 from crowdbot.core.crowd.routing.trees import TO_GOAL
 from crowdbot.core.crowd.state import (
@@ -46,22 +46,6 @@ _SQUEEZE, _RELAXATION = 0.4, 0.5
 _NEAR_GOAL = 1.5
 
 
-class Habits(NamedTuple):
-    """People's habits in choosing among several paths.
-
-    Attributes:
-        spread: largest distance from a corner when passing, m.
-        patience: time without progress before looking for another path, s.
-        detour: largest relative length of the other path.
-        key: key of the random draws.
-    """
-
-    spread: float
-    patience: float
-    detour: float
-    key: np.uint64
-
-
 @kernel
 def find_waypoints(
     agents: People, decision: int, dt: float, members: Indices, ids: Indices, preferred: Array,
@@ -79,7 +63,7 @@ def find_waypoints(
         tree_of: (N,) row of ``left`` and ``after`` that leads to each one's goal.
         left, after: (T, V) see `plan_tree`.
         wholes, reals: see `PackedMesh`: corners; sight at a body's margin, and nearer to walls.
-        spread, patience, detour, key: see `Habits`.
+        spread, patience, detour, key: see `WayFinding`.
 
     Returns:
         1 + the index in ``members`` of the first with a goal other than in ``goals``, and then
@@ -91,7 +75,7 @@ def find_waypoints(
             return k + 1
     table = table_in(wholes, reals)
     sight, wider = sight_in(wholes, reals, 0), sight_in(wholes, reals, 1)
-    habits = Habits(spread, patience, detour, key)
+    habits = WayFinding(spread, patience, detour, key)
     for i in members:
         if agents[i].waiting == GONE:
             continue
@@ -118,7 +102,7 @@ def _looks(agents: People, i: int, table: Array) -> bool:
 @inline_kernel
 def _look(
     agents: People, i: int, number: int, left: Array, after: Indices, table: Array,
-    sight: Sight, wider: Sight, blocked: bool, habits: Habits,
+    sight: Sight, wider: Sight, blocked: bool, habits: WayFinding,
 ) -> None:  # fmt: skip
     """Find agent i's waypoint: its goal, or the corner on the path to it."""
     if blocked:
@@ -167,7 +151,7 @@ def _keeps_on(agents: People, i: int, blocked: bool, wider: Sight) -> bool:
 
 
 @kernel
-def _step_aside(agents: People, i: int, number: int, sight: Sight, habits: Habits) -> None:
+def _step_aside(agents: People, i: int, number: int, sight: Sight, habits: WayFinding) -> None:
     """Let agent i, which cannot pass the person ahead, first walk a little to one side."""
     dx, dy = agents[i].waypoint_x - agents[i].x, agents[i].waypoint_y - agents[i].y
     away = math.hypot(dx, dy)
@@ -176,7 +160,7 @@ def _step_aside(agents: People, i: int, number: int, sight: Sight, habits: Habit
     trip, draw = int(agents[i].trip), int(agents[i].detours)
     for k in range(_SIDES):
         counter = _SIDE_DRAWS + _SIDES * draw + k
-        u = counter_rng.uniform(habits.key, number, trip, counter_rng.ROUTE, counter)
+        u = counter_rng.uniform(np.uint64(habits.key), number, trip, counter_rng.ROUTE, counter)
         turn = math.pi * (0.4 + 0.6 * u) if u < 0.5 else -math.pi * (0.4 + 0.6 * (u - 0.5))
         c, t = _STEP * math.cos(turn) / away, _STEP * math.sin(turn) / away
         x, y = agents[i].x + c * dx - t * dy, agents[i].y + t * dx + c * dy
@@ -247,11 +231,13 @@ def _beside(
     v: int,
     aside: float,
     table: Array,
-    habits: Habits,
+    habits: WayFinding,
 ) -> tuple[float, float]:
     """Return the position beside corner v at which agent i passes it on this trip."""
     trip, draw = int(agents[i].trip), int(agents[i].detours)
-    u = counter_rng.uniform(habits.key, number, trip, counter_rng.ROUTE, (v << 16) + draw)
+    u = counter_rng.uniform(
+        np.uint64(habits.key), number, trip, counter_rng.ROUTE, (v << 16) + draw
+    )
     corner = table[v]
     away = aside * u * u * min(habits.spread, _SHARE_OF_ROOM * corner[ROOM])
     return corner[CORNER_X] + away * corner[OUT_X], corner[CORNER_Y] + away * corner[OUT_Y]
@@ -260,7 +246,7 @@ def _beside(
 @kernel
 def _follow(
     agents: People, i: int, number: int, after: Indices, left: Array, table: Array,
-    sight: Sight, wider: Sight, habits: Habits,
+    sight: Sight, wider: Sight, habits: WayFinding,
 ) -> bool:  # fmt: skip
     """Continue to the next corner if it is visible; drop one that is out of sight.
 
@@ -304,7 +290,7 @@ def _follow(
 @kernel
 def _choose(
     agents: People, i: int, left: Array, after: Indices, table: Array, sight: Sight,
-    avoided: int, habits: Habits,
+    avoided: int, habits: WayFinding,
 ) -> None:  # fmt: skip
     """Aim agent i at the corner in sight that gives the shortest path; 0 if there is none.
 
@@ -345,7 +331,7 @@ def _leads_past(v: int, avoided: int, table: Array, after: Indices) -> bool:
 
 @kernel
 def _set_waypoint(
-    agents: People, i: int, number: int, table: Array, sight: Sight, habits: Habits
+    agents: People, i: int, number: int, table: Array, sight: Sight, habits: WayFinding
 ) -> None:
     """Set the point that agent i walks to."""
     v = int(agents[i].corner) - 1

@@ -16,7 +16,7 @@ from crowdbot.core.exchange.trial_export.elements import add, number, place, tex
 from crowdbot.core.exchange.trial_export.lost import name_lost
 from crowdbot.core.exchange.trial_export.people import add_people
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.robots import build_model
+from crowdbot.core.robots.build import build_model
 from crowdbot.core.scenarios.lock import population
 from crowdbot.dsl.scenario.robot import Robot
 from crowdbot.dsl.scenario.scenario import Scenario

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
+from crowdbot.core.realism.compare import RealismScore
 from crowdbot.core.realism.near_robots.features import FEATURES, SHARES
 from crowdbot.core.realism.near_robots.statistics import LEAST, Cell, CellStatistics
 
@@ -23,21 +23,6 @@ _RESOLUTION = {
 }
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Similarity:
-    """Similarity between two sets of people's responses to robots, from 0 to 1.
-
-    Attributes:
-        score: mean over cells, weighted by their recorded encounters.
-        cells: cell -> mean over its features.
-        parts: feature -> mean over cells, weighted in the same way.
-    """
-
-    score: float
-    cells: Mapping[Cell, float]
-    parts: Mapping[str, float]
-
-
 def compared(recorded: Mapping[Cell, CellStatistics], least: int = LEAST) -> list[Cell]:
     """Return the cells with enough recorded encounters."""
     return [cell for cell, found in recorded.items() if found.count >= least]
@@ -47,8 +32,8 @@ def similarity(
     own: Mapping[Cell, CellStatistics],
     recorded: Mapping[Cell, CellStatistics],
     cells: Mapping[Cell, int],
-) -> Similarity:
-    """Return the similarity of people to recorded people.
+) -> RealismScore:
+    """Return the similarity of people's responses to recorded ones, means by weight.
 
     Args:
         own, recorded: distributions by cell; a cell without own encounters scores 0.
@@ -57,7 +42,7 @@ def similarity(
     each = {c: parts_of(own[c], recorded[c]) if c in own else {} for c in cells}
     weights = {c: float(w) for c, w in cells.items()}
     scores = {c: float(np.mean(list(p.values()))) if p else 0.0 for c, p in each.items()}
-    return Similarity(
+    return RealismScore(
         score=_mean(scores, weights),
         cells=scores,
         parts={

@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from crowdbot.core.realism.compare import RealismScore
 from crowdbot.core.realism.json_numbers import rounded
-from crowdbot.core.realism.near_robots.compare import Similarity, similarity
+from crowdbot.core.realism.near_robots.compare import similarity
 from crowdbot.core.realism.near_robots.encounters import RobotEncounter
 from crowdbot.core.realism.near_robots.features import features_of
 from crowdbot.core.realism.near_robots.reference import RobotReference
@@ -137,7 +138,7 @@ def _straight(encounters: Sequence[RobotEncounter]) -> dict[Cell, CellStatistics
 
 
 def _cells(
-    found: Similarity, floor: Similarity, reference: RobotReference
+    found: RealismScore, floor: RealismScore, reference: RobotReference
 ) -> dict[Cell, tuple[float, float, float, float]]:
     out = {}
     for cell, score in found.cells.items():

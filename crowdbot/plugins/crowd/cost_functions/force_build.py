@@ -7,6 +7,8 @@ the rest is shared.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 from crowdbot.plugin import (
     BASE,
@@ -14,12 +16,15 @@ from crowdbot.plugin import (
     GRADIENT,
     OPTIMUM,
     AgentRecord,
+    Array,
+    CompiledCost,
     Pointer,
     array_kernel,
     as_record,
     declared_kernel,
     record_type,
 )
+from crowdbot.plugins.crowd.cost_functions.weighted_cost import WeightedCostSpec
 
 #: Largest force, m/s^2: a target has to stay finite when squared.
 _LARGEST = 1e9
@@ -47,6 +52,22 @@ def set_target(fx: float, fy: float, agent: AgentRecord, work: Pointer) -> int:
     return 1
 
 
+def force_cost(
+    spec: WeightedCostSpec, prepare: Callable[..., Any], params: Array, **walls: Any
+) -> CompiledCost:
+    """Return the cost of a force whose ``prepare`` ends with `set_target`.
+
+    Args:
+        spec: for the weight.
+        prepare, params: of the cost.
+        walls: fields of `CompiledCost` on the walls that it needs.
+    """
+    return CompiledCost(
+        base=no_base, prepare=prepare, excess=_from_target, gradient=_to_target, optimum=_target,
+        params=params, weight=spec.weight, **walls,
+    )  # fmt: skip
+
+
 @declared_kernel(BASE)
 def no_base(ux: float, uy: float, preferred: float, max_speed: float, params: Pointer) -> float:
     """Return 0: no cost depends on the candidate alone."""
@@ -54,7 +75,7 @@ def no_base(ux: float, uy: float, preferred: float, max_speed: float, params: Po
 
 
 @declared_kernel(EXCESS)
-def from_target(
+def _from_target(
     ux: float, uy: float, budget: float, agent: AgentRecord, work: Pointer, params: Pointer
 ) -> float:
     """Return the cost by the distance from the target velocity."""
@@ -63,7 +84,7 @@ def from_target(
 
 
 @declared_kernel(GRADIENT)
-def to_target(
+def _to_target(
     ux: float, uy: float, agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer
 ) -> int:
     """Write the cost's gradient; at the present velocity it is minus the force per mass."""
@@ -73,7 +94,7 @@ def to_target(
 
 
 @declared_kernel(OPTIMUM)
-def target(agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer) -> int:
+def _target(agent: AgentRecord, work: Pointer, params: Pointer, out: Pointer) -> int:
     """Write the velocity of least cost."""
     target = as_record(work, _TARGET)
     out[0], out[1] = target.vx, target.vy

@@ -6,18 +6,16 @@ form of van Toll et al., I3D 2020.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
-from annotated_types import Ge
+from crowdbot.plugin import Component, Range, default
+from crowdbot.plugins.crowd.cost_functions.weighted_cost import WeightedCostSpec
 
-from crowdbot.plugin import Component, CostFunctionSpec, Range, default
 
-
-class GoalReachingForceSpec(CostFunctionSpec):
+class GoalReachingForceSpec(WeightedCostSpec):
     """Pulls towards the preferred velocity within the policy's relaxation time."""
 
     kind: Literal["goal_reaching_force"] = "goal_reaching_force"
-    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
     range: Range = default(Range(), "Has no effect: no neighbour counts.")
 
 

@@ -14,13 +14,7 @@ from crowdbot.plugin import (
     declared_kernel,
     record_values,
 )
-from crowdbot.plugins.crowd.cost_functions.force_build import (
-    from_target,
-    no_base,
-    set_target,
-    target,
-    to_target,
-)
+from crowdbot.plugins.crowd.cost_functions.force_build import force_cost, set_target
 from crowdbot.plugins.crowd.cost_functions.goal_reaching_force import GoalReachingForceSpec
 
 
@@ -42,13 +36,9 @@ def _prepare(
 
 def build(spec: GoalReachingForceSpec) -> CompiledCost:
     """Return the compiled functions; there are no parameters."""
-    return CompiledCost(
-        base=no_base,
-        prepare=_prepare,
-        excess=from_target,
-        gradient=to_target,
-        optimum=target,
-        params=record_values(COST_PARAMS, range=spec.range.value, from_surface=0.0),
-        weight=spec.weight,
+    return force_cost(
+        spec,
+        _prepare,
+        record_values(COST_PARAMS, range=spec.range.value, from_surface=0.0),
         wall_reach=(0.0, 0.0),
     )

@@ -10,15 +10,14 @@ from typing import Annotated, Literal
 
 from annotated_types import Ge
 
-from crowdbot.plugin import Component, CostFunctionSpec, PositiveDuration, Range, default
+from crowdbot.plugin import Component, PositiveDuration, default
+from crowdbot.plugins.crowd.cost_functions.weighted_cost import WeightedCostSpec
 
 
-class KaramouzasSpec(CostFunctionSpec):
+class KaramouzasSpec(WeightedCostSpec):
     """Least effort among velocities whose deviation fits the time left before a collision."""
 
     kind: Literal["karamouzas"] = "karamouzas"
-    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
-    range: Range = default(Range(), "Which neighbours and walls count.")
     alpha: Annotated[float, Ge(0)] = default(5.0, "Weight of the deviation in heading.")
     beta: Annotated[float, Ge(0)] = default(0.5, "Weight of the change of speed.")
     gamma: Annotated[float, Ge(0)] = default(1.0, "Weight of the deviation in velocity.")

@@ -6,19 +6,16 @@ crowd disasters", PNAS 108 (2011), in the form of van Toll et al., I3D 2020.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
-from annotated_types import Ge
+from crowdbot.plugin import Component, PositiveLength, default
+from crowdbot.plugins.crowd.cost_functions.weighted_cost import WeightedCostSpec
 
-from crowdbot.plugin import Component, CostFunctionSpec, PositiveLength, Range, default
 
-
-class MoussaidSpec(CostFunctionSpec):
+class MoussaidSpec(WeightedCostSpec):
     """Heads for the visible free point nearest to the goal, at a safe speed."""
 
     kind: Literal["moussaid"] = "moussaid"
-    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
-    range: Range = default(Range(), "Which neighbours and walls count.")
     d_max: PositiveLength = default(8.0, "How far the way is looked at, m.")
 
 

@@ -5,19 +5,16 @@ Source: van den Berg, Guy, Lin, Manocha, "Reciprocal n-body collision avoidance"
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
-from annotated_types import Ge
+from crowdbot.plugin import Component, PositiveDuration, default
+from crowdbot.plugins.crowd.cost_functions.weighted_cost import WeightedCostSpec
 
-from crowdbot.plugin import Component, CostFunctionSpec, PositiveDuration, Range, default
 
-
-class OrcaSpec(CostFunctionSpec):
+class OrcaSpec(WeightedCostSpec):
     """The velocity nearest to the preferred one that stays safe for a time horizon."""
 
     kind: Literal["orca"] = "orca"
-    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
-    range: Range = default(Range(), "Which neighbours and walls count.")
     time_horizon: PositiveDuration = default(5.0, "How long the velocity has to be safe, s.")
     limit: Literal["max_speed", "preferred_speed"] = default(
         "max_speed",

@@ -12,20 +12,17 @@ from annotated_types import Ge, Le
 
 from crowdbot.plugin import (
     Component,
-    CostFunctionSpec,
     NonNegativeDuration,
     PositiveDuration,
-    Range,
     default,
 )
+from crowdbot.plugins.crowd.cost_functions.weighted_cost import WeightedCostSpec
 
 
-class ParisSpec(CostFunctionSpec):
+class ParisSpec(WeightedCostSpec):
     """Rates each direction by the speeds at which an agent passes in front of or behind others."""
 
     kind: Literal["paris"] = "paris"
-    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
-    range: Range = default(Range(), "Which neighbours and walls count.")
     w_a: Annotated[float, Ge(0), Le(1)] = default(
         0.5, "Share of others in the cost; the rest is the heading."
     )

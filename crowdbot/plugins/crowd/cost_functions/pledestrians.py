@@ -8,24 +8,21 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt
+from annotated_types import Gt
 
 from crowdbot.plugin import (
     Component,
-    CostFunctionSpec,
     NonNegativeDuration,
     PositiveDuration,
-    Range,
     default,
 )
+from crowdbot.plugins.crowd.cost_functions.weighted_cost import WeightedCostSpec
 
 
-class PledestriansSpec(CostFunctionSpec):
+class PledestriansSpec(WeightedCostSpec):
     """Least metabolic energy to the goal without an early collision."""
 
     kind: Literal["pledestrians"] = "pledestrians"
-    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
-    range: Range = default(Range(), "Which neighbours and walls count.")
     w_a: Annotated[float, Gt(0)] = default(2.23, "Power of standing, W/kg.")
     w_b: Annotated[float, Gt(0)] = default(
         1.26, "Power of walking per squared speed, W s^2/(kg m^2)."

@@ -10,15 +10,14 @@ from typing import Annotated, Literal
 
 from annotated_types import Ge
 
-from crowdbot.plugin import Component, CostFunctionSpec, PositiveDuration, Range, default
+from crowdbot.plugin import Component, PositiveDuration, default
+from crowdbot.plugins.crowd.cost_functions.weighted_cost import WeightedCostSpec
 
 
-class PowerLawSpec(CostFunctionSpec):
+class PowerLawSpec(WeightedCostSpec):
     """Pushes away from collisions with a power law of the time left."""
 
     kind: Literal["power_law"] = "power_law"
-    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
-    range: Range = default(Range(), "Which neighbours and walls count.")
     k: Annotated[float, Ge(0)] = default(1.5, "Strength, m^2.")
     tau0: PositiveDuration = default(3.0, "Collisions later than this do not count, s.")
 

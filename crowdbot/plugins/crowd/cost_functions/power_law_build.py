@@ -21,13 +21,7 @@ from crowdbot.plugin import (
     record_values,
 )
 from crowdbot.plugin.for_crowds import is_passed, swept_width
-from crowdbot.plugins.crowd.cost_functions.force_build import (
-    from_target,
-    no_base,
-    set_target,
-    target,
-    to_target,
-)
+from crowdbot.plugins.crowd.cost_functions.force_build import force_cost, set_target
 from crowdbot.plugins.crowd.cost_functions.power_law import PowerLawSpec
 from crowdbot.plugins.crowd.cost_functions.wall_points_build import (
     choose,
@@ -112,14 +106,10 @@ def _prepare(
 
 def build(spec: PowerLawSpec) -> CompiledCost:
     """Return the compiled functions with this spec's parameters."""
-    return CompiledCost(
-        base=no_base,
-        prepare=_prepare,
-        excess=from_target,
-        gradient=to_target,
-        optimum=target,
-        params=record_values(_PARAMS, spec, **spec.range.cost_params()),
-        weight=spec.weight,
+    return force_cost(
+        spec,
+        _prepare,
+        record_values(_PARAMS, spec, **spec.range.cost_params()),
         # Later collisions exert no force.
         wall_reach=(0.0, spec.tau0),
         walls_on_the_way=True,

@@ -6,18 +6,16 @@ Space", I3D 2020.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
-from annotated_types import Ge
+from crowdbot.plugin import Component, Range, default
+from crowdbot.plugins.crowd.cost_functions.weighted_cost import WeightedCostSpec
 
-from crowdbot.plugin import Component, CostFunctionSpec, Range, default
 
-
-class RandomFunctionSpec(CostFunctionSpec):
+class RandomFunctionSpec(WeightedCostSpec):
     """A random cost between 0 and 2, from each agent's own generator."""
 
     kind: Literal["random_function"] = "random_function"
-    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
     range: Range = default(Range(), "Has no effect: no neighbour counts.")
 
 

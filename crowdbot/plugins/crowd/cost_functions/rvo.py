@@ -10,15 +10,14 @@ from typing import Annotated, Literal
 
 from annotated_types import Ge
 
-from crowdbot.plugin import Component, CostFunctionSpec, Range, default
+from crowdbot.plugin import Component, default
+from crowdbot.plugins.crowd.cost_functions.weighted_cost import WeightedCostSpec
 
 
-class RvoSpec(CostFunctionSpec):
+class RvoSpec(WeightedCostSpec):
     """Reflex against imminent collisions with people and walls."""
 
     kind: Literal["rvo"] = "rvo"
-    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
-    range: Range = default(Range(), "Which neighbours and walls count.")
     w: Annotated[float, Ge(0)] = default(1.0, "Weight of the collision term, m.")
 
 

@@ -12,20 +12,17 @@ from annotated_types import Ge
 
 from crowdbot.plugin import (
     Component,
-    CostFunctionSpec,
     PositiveDuration,
     PositiveLength,
-    Range,
     default,
 )
+from crowdbot.plugins.crowd.cost_functions.weighted_cost import WeightedCostSpec
 
 
-class SocialForcesAvoidanceSpec(CostFunctionSpec):
+class SocialForcesAvoidanceSpec(WeightedCostSpec):
     """Pushes away from people and walls, less from people behind."""
 
     kind: Literal["social_forces_avoidance"] = "social_forces_avoidance"
-    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
-    range: Range = default(Range(), "Which neighbours and walls count.")
     v0: Annotated[float, Ge(0)] = default(2.1, "Strength of people, m^2/s^2.")
     sigma: PositiveLength = default(0.3, "Reach of people, m.")
     u0: Annotated[float, Ge(0)] = default(10.0, "Strength of walls, m^2/s^2.")

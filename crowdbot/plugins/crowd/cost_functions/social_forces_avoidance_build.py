@@ -24,13 +24,7 @@ from crowdbot.plugin import (
     record_values,
 )
 from crowdbot.plugin.for_crowds import MORE_WALLS, opposite_taken_for_parallel
-from crowdbot.plugins.crowd.cost_functions.force_build import (
-    from_target,
-    no_base,
-    set_target,
-    target,
-    to_target,
-)
+from crowdbot.plugins.crowd.cost_functions.force_build import force_cost, set_target
 from crowdbot.plugins.crowd.cost_functions.social_forces_avoidance import SocialForcesAvoidanceSpec
 from crowdbot.plugins.crowd.cost_functions.wall_points_build import (
     SAME,
@@ -219,19 +213,15 @@ def _prepare(
 
 def build(spec: SocialForcesAvoidanceSpec) -> CompiledCost:
     """Return the compiled functions with this spec's parameters."""
-    return CompiledCost(
-        base=no_base,
-        prepare=_prepare,
-        excess=from_target,
-        gradient=to_target,
-        optimum=target,
-        params=record_values(
+    return force_cost(
+        spec,
+        _prepare,
+        record_values(
             _PARAMS,
             spec,
             **spec.range.cost_params(),
             relative=float(spec.stride == "relative"),
         ),
-        weight=spec.weight,
         wall_reach=(min(_REACHES * spec.r, spec.range.value), 0.0),
         looks_farther=True,
     )

@@ -6,19 +6,16 @@ Crowd Simulation using Costs in Velocity Space", I3D 2020.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
-from annotated_types import Ge
+from crowdbot.plugin import Component, PositiveLength, default
+from crowdbot.plugins.crowd.cost_functions.weighted_cost import WeightedCostSpec
 
-from crowdbot.plugin import Component, CostFunctionSpec, PositiveLength, Range, default
 
-
-class VanTollSpec(CostFunctionSpec):
+class VanTollSpec(WeightedCostSpec):
     """Weighs the free distance against turning away from the goal and from the present velocity."""
 
     kind: Literal["van_toll"] = "van_toll"
-    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
-    range: Range = default(Range(), "Which neighbours and walls count.")
     max_distance: PositiveLength = default(8.0, "How far the way is looked at, m.")
 
 

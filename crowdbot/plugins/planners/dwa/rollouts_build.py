@@ -19,6 +19,7 @@ from crowdbot.plugins.planners.dwa.parameters_build import (
     TURN_TIME,
     V_MAX,
 )
+from crowdbot.plugins.planners.shared.follow_velocity_build import slewed
 from crowdbot.plugins.planners.shared.points_build import minimum
 from crowdbot.plugins.planners.shared.robot_outline_build import nearest_to_core
 
@@ -32,15 +33,10 @@ ROUNDING = 1e-9
 
 
 @kernel
-def _slewed(value: float, target: float, change: float) -> float:
-    return min(max(target, value - change), value + change)
-
-
-@kernel
 def slewed_planar(v: float, vy: float, vt: float, vyt: float, change: float) -> tuple[float, float]:
     """Return the velocity after one step towards a target, with a limited change (v, vy)."""
     if vy == vyt:
-        return _slewed(v, vt, change), vy
+        return slewed(v, vt, change), vy
     ahead, aside = vt - v, vyt - vy
     length = math.hypot(ahead, aside)
     share = min(1.0, change / length)
@@ -126,7 +122,7 @@ def turn_of(turns: Array, w: float, target: float, p: Array) -> int:
     angle, c, s, before = 0.0, 1.0, 0.0, 0.0
     for k in range(1, turns.shape[1]):
         goal = target if k * STEP <= p[TURN_TIME] else 0.0
-        w_next = _slewed(w, goal, p[ALPHA_MAX] * STEP)
+        w_next = slewed(w, goal, p[ALPHA_MAX] * STEP)
         middle = angle + (w + w_next) / 4.0 * STEP
         angle += (w + w_next) / 2.0 * STEP
         if middle != before:  # constant after the turn

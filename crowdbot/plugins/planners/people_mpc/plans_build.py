@@ -16,6 +16,7 @@ from crowdbot.plugins.planners.people_mpc.plan_world_build import (
     extent_of,
     gaps,
 )
+from crowdbot.plugins.planners.shared.follow_velocity_build import slewed
 from crowdbot.plugins.planners.shared.points_build import wrapped
 
 #: Directions of the second stretch beside the goal's, rad, and its speeds as shares.
@@ -58,11 +59,6 @@ class PlanOutcome(NamedTuple):
 
 
 @kernel
-def _slewed(value: float, target: float, change: float) -> float:
-    return min(max(target, value - change), value + change)
-
-
-@kernel
 def _second(
     p: Array, first: tuple[float, float, float], off: float, aside: float, top: float
 ) -> tuple[float, float, float]:
@@ -101,7 +97,7 @@ def _stepped(
     most, change = p[A_MAX] * STEP, math.sqrt(dv * dv + dvy * dvy)
     if change > most:
         dv, dvy = dv * most / change, dvy * most / change
-    w_next = _slewed(w, target[1], p[ALPHA_MAX] * STEP)
+    w_next = slewed(w, target[1], p[ALPHA_MAX] * STEP)
     middle = yaw + (w + w_next) / 4.0 * STEP
     c, s = math.cos(middle), math.sin(middle)
     ahead, left = (v + 0.5 * dv) * STEP, (vy + 0.5 * dvy) * STEP
@@ -345,8 +341,8 @@ def path_of(
             if p[SIDEWAYS] > 0.0:
                 wt = _GAIN * wrapped(off)
                 vt, vyt = pace * p[V_MAX] * math.cos(turn), pace * p[V_MAX] * math.sin(turn)
-        v, vy = _slewed(v, vt, p[A_MAX] * STEP), _slewed(vy, vyt, p[A_MAX] * STEP)
-        w = _slewed(w, max(-p[W_MAX], min(p[W_MAX], wt)), p[ALPHA_MAX] * STEP)
+        v, vy = slewed(v, vt, p[A_MAX] * STEP), slewed(vy, vyt, p[A_MAX] * STEP)
+        w = slewed(w, max(-p[W_MAX], min(p[W_MAX], wt)), p[ALPHA_MAX] * STEP)
         yaw += w * STEP
         x += (v * math.cos(yaw) - vy * math.sin(yaw)) * STEP
         y += (v * math.sin(yaw) + vy * math.cos(yaw)) * STEP

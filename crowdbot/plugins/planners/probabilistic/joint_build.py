@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from crowdbot.plugin import Array, array_kernel, kernel
+from crowdbot.plugins.planners.shared.follow_velocity_build import slewed
 
 #: Time between the points of a way at which densities are compared, s.
 STEP = 0.25
@@ -178,11 +179,6 @@ def _placed(robot: Array, own: Array, discs: Array) -> None:
             x, y = discs[i, k, 0], discs[i, k, 1]
 
 
-@kernel
-def _slewed(value: float, target: float, change: float) -> float:
-    return min(max(target, value - change), value + change)
-
-
 @array_kernel
 def way(twist: Array, command: Array, p: Array) -> Array:
     """Return the poses (T, 3) of a robot that accelerates to a command as fast as it can.
@@ -197,9 +193,9 @@ def way(twist: Array, command: Array, p: Array) -> Array:
     v, w, vy = twist[0], twist[1], twist[2]
     x, y, yaw = 0.0, 0.0, 0.0
     for k in range(count):
-        v = _slewed(v, command[0], p[A_MAX] * STEP)
-        w = _slewed(w, command[1], p[ALPHA_MAX] * STEP)
-        vy = _slewed(vy, command[2], p[A_MAX] * STEP)
+        v = slewed(v, command[0], p[A_MAX] * STEP)
+        w = slewed(w, command[1], p[ALPHA_MAX] * STEP)
+        vy = slewed(vy, command[2], p[A_MAX] * STEP)
         x, y, yaw = _advanced(x, y, yaw, v, w, vy)
         out[k, 0], out[k, 1], out[k, 2] = x, y, yaw
     return out

@@ -16,13 +16,13 @@ from crowdbot.plugin import (
     NoValidCommand,
     Observation,
     Task,
-    kernel,
 )
 from crowdbot.plugins.planners.goal_seek_build import bearing
 from crowdbot.plugins.planners.rpp.rpp import RppSpec
 from crowdbot.plugins.planners.shared.cover_build import covering_discs
 from crowdbot.plugins.planners.shared.driven_path_build import driven
 from crowdbot.plugins.planners.shared.path_planner_build import PathPlanner
+from crowdbot.plugins.planners.shared.stopping_build import arc_gap_moving, compile_stopping
 from crowdbot.plugins.planners.shared.surroundings_build import PlannerScene
 
 #: Time step of the arc that is tested for collisions, s.
@@ -41,7 +41,7 @@ class Rpp(PathPlanner):
         """Store the outline; compile kernels that are not compiled yet."""
         del seed
         self._robot = covering_discs(self._spec.robot_radius, task.robot)
-        arc_gap(np.ones((1, 3)), self._robot, 0.1, 0.0, 0.1)
+        compile_stopping()
 
     def drive(
         self, obs: Observation, scene: PlannerScene, waypoint: tuple[float, float], top: float
@@ -66,7 +66,7 @@ class Rpp(PathPlanner):
         bend = top
         if abs(curvature) * spec.bend_radius > 1.0:
             bend = top / (abs(curvature) * spec.bend_radius)
-        near = arc_gap(_discs(scene), self._robot, 0.0, 0.0, 0.0)
+        near = _gap(_bodies(scene), self._robot, 0.0, 0.0, 0.0)
         close = top
         if near < spec.proximity:
             close = top * spec.proximity_gain * max(near, 0.0) / spec.proximity
@@ -80,50 +80,29 @@ class Rpp(PathPlanner):
         """
         steps = max(1, math.ceil(self._spec.collision_time / _STEP))
         obs.draw("plan", driven(np.tile((v, w, 0.0), (steps, 1)), _STEP))
-        discs = _discs(scene)
-        now = arc_gap(discs, self._robot, v, w, 0.0)
-        if arc_gap(discs, self._robot, v, w, self._spec.collision_time) < min(0.0, now - 1e-3):
+        bodies = _bodies(scene)
+        now = _gap(bodies, self._robot, v, w, 0.0)
+        if _gap(bodies, self._robot, v, w, self._spec.collision_time) < min(0.0, now - 1e-3):
             raise NoValidCommand
         return Command(v, w)
 
 
-def _discs(scene: PlannerScene) -> Array:
-    """Return what is around, (N, 3) x, y, radius in the robot's frame, m."""
+def _gap(bodies: Array, robot: Array, v: float, w: float, time: float) -> float:
+    """Return the least gap on an arc of some length, s, which ends at once, m."""
+    return float(arc_gap_moving(bodies, robot, v, w, time, math.inf))
+
+
+def _bodies(scene: PlannerScene) -> Array:
+    """Return what is around as bodies that stand, (N, 5), see `arc_gap_moving`."""
     discs = scene.discs
     x, y = discs[:, 0] - scene.pose.x, discs[:, 1] - scene.pose.y
     c, s = math.cos(scene.pose.yaw), math.sin(scene.pose.yaw)
-    return np.column_stack([c * x + s * y, c * y - s * x, discs[:, 2]])
+    still = np.zeros((len(discs), 2))
+    return np.column_stack([c * x + s * y, c * y - s * x, still, discs[:, 2]])
 
 
 def _clamped(value: float, most: float) -> float:
     return max(-most, min(most, value))
-
-
-@kernel
-def arc_gap(discs: Array, robot: Array, v: float, w: float, time: float) -> float:
-    """Return the least gap to anything along an arc, m; infinite if there is nothing.
-
-    Args:
-        discs: (N, 3) x, y, radius in the robot's frame, m.
-        robot: (K, 3) discs that hold the robot, m.
-        v, w: of the arc, m/s, rad/s.
-        time: length of the arc, s.
-    """
-    best, x, y, yaw, t = math.inf, 0.0, 0.0, 0.0, 0.0
-    while True:
-        c, s = math.cos(yaw), math.sin(yaw)
-        for k in range(robot.shape[0]):
-            px = x + c * robot[k, 0] - s * robot[k, 1]
-            py = y + s * robot[k, 0] + c * robot[k, 1]
-            for i in range(discs.shape[0]):
-                dx, dy = discs[i, 0] - px, discs[i, 1] - py
-                best = min(best, math.sqrt(dx * dx + dy * dy) - robot[k, 2] - discs[i, 2])
-        if t >= time:
-            return best
-        x += v * _STEP * math.cos(yaw + 0.5 * w * _STEP)
-        y += v * _STEP * math.sin(yaw + 0.5 * w * _STEP)
-        yaw += w * _STEP
-        t += _STEP
 
 
 build = Rpp

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.plugin import Command, RobotLimits
+from crowdbot.plugin import Command, RobotLimits, kernel
 
 #: Yaw rate per heading error, 1/s; error above which a robot turns on the spot, rad.
 _GAIN, _TURN = 2.5, 1.2
 #: Wanted velocities below this mean to stand, m/s.
 _STILL = 0.02
+
+
+@kernel
+def slewed(value: float, target: float, change: float) -> float:
+    """Return a value after one step towards a target, with a limited change."""
+    return min(max(target, value - change), value + change)
 
 
 def follow(

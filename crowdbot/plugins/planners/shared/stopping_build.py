@@ -38,7 +38,7 @@ def arc_gap_moving(
                 best = min(best, math.sqrt(dx * dx + dy * dy) - robot[k, 2] - bodies[i, 4])
         if t >= time:
             share = 0.0 if speed == 0.0 else 1.0 - brake * (t - time) / speed
-            if share <= 0.0:
+            if not share > 0.0:  # or NaN, where an infinite deceleration begins
                 return best
         x += share * v * _STEP * math.cos(yaw + 0.5 * share * w * _STEP)
         y += share * v * _STEP * math.sin(yaw + 0.5 * share * w * _STEP)

@@ -6,13 +6,10 @@ vision-based crowd simulation algorithms", CGF 2017, in the form of van Toll et 
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
-
-from annotated_types import Ge
+from typing import Literal
 
 from crowdbot.plugin import (
     Component,
-    CostFunctionSpec,
     PositiveAngle,
     PositiveDuration,
     PositiveLength,
@@ -20,13 +17,13 @@ from crowdbot.plugin import (
     Range,
     default,
 )
+from crowdbot.plugins.crowd.cost_functions.weighted_cost import WeightedCostSpec
 
 
-class TtcaDcaSpec(CostFunctionSpec):
+class TtcaDcaSpec(WeightedCostSpec):
     """Mid-term collision avoidance and goal seeking."""
 
     kind: Literal["ttca_dca"] = "ttca_dca"
-    weight: Annotated[float, Ge(0)] = default(1.0, "Factor of the cost.")
     range: Range = default(Range(), "Which neighbours count.")
     sigma_ttca: PositiveDuration = default(1.0, "Spread in time, s.")
     sigma_dca: PositiveLength = default(0.3, "Spread in distance, m.")
