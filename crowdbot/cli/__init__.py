@@ -55,12 +55,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         if message := left_by(error):
             _say(message)
         return PluginError.exit_code if message else 130
-    except BrokenPipeError:
-        _drop_output()
-        return 0
     except OSError as error:
-        from crowdbot.cli.app.mishaps import system_error
+        from crowdbot.cli.app.mishaps import no_one_reads, system_error
 
+        if isinstance(error, BrokenPipeError) and no_one_reads(sys.stdout, sys.stderr):
+            _drop_output()
+            return 0
         _say(system_error(error))
         return 1
     except MemoryError as error:
@@ -72,10 +72,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     except Exception as error:
         if os.environ.get("CROWDBOT_DEBUG"):
             raise
-        from crowdbot.cli.app.mishaps import internal_error, link_loop, system_error
+        from crowdbot.cli.app.mishaps import ended_process, internal_error, link_loop, system_error
 
         if loop := link_loop(error):
             _say(system_error(loop))
+            return 1
+        if ended := ended_process(error):
+            _say(ended)
             return 1
         _say(internal_error(error))
         return 4
@@ -95,8 +98,8 @@ def _run(argv: Sequence[str] | None) -> int:
             _dispatch(words)
         sys.stdout.flush()
     except SystemExit as done:
-        if isinstance(done.__context__, BrokenPipeError):  # rich converts it to an exit
-            raise done.__context__ from None
+        if isinstance(done.__context__, BrokenPipeError):  # rich's, which drops the output itself
+            return 0
         if left_by(done):
             raise
         sys.stdout.flush()

@@ -6,9 +6,11 @@ import errno
 import os
 import re
 import resource
+import select
 import sys
 import threading
 import traceback
+from typing import TextIO
 
 from crowdbot.core.registry.plugin_errors import (
     UserInterrupt,
@@ -43,10 +45,41 @@ def system_error(error: OSError) -> str:
         return "error: the current folder is gone; change to one that exists"
     where = error.filename or "operating system"
     text = f"error: {where}: {error.strerror or error}"
+    if error.errno == errno.EPIPE:
+        text += "; a process that this command started has ended"
     if error.errno == errno.EMFILE:
         limit = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
         text += f" (this process may open {limit}; raise it with 'ulimit -n')"
     return text
+
+
+def no_one_reads(*streams: TextIO) -> bool:
+    """Return True if the reader of an output stream has gone, such as ``head -1``.
+
+    Other pipes break, too: those to processes that a command has started.
+    """
+    gone = select.POLLERR | select.POLLHUP
+    for stream in streams:
+        try:
+            waiting = select.poll()
+            waiting.register(stream, 0)
+            if any(event & gone for _, event in waiting.poll(0)):
+                return True
+        except (OSError, ValueError):  # closed, or no file
+            return True
+    return False
+
+
+def ended_process(error: Exception) -> str:
+    """Return one line if a process of a pool has ended before its time, else ""."""
+    from concurrent.futures.process import BrokenProcessPool
+
+    if not isinstance(error, BrokenProcessPool):
+        return ""
+    return (
+        f"error: a process that this command started has ended: killed, such as for want of "
+        f"memory, or {sys.executable} cannot be started; --jobs 1 starts none"
+    )
 
 
 def link_loop(error: Exception) -> OSError | None:
