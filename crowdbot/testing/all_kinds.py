@@ -50,7 +50,8 @@ def check_kind_is_a_name(component: Component[Any]) -> None:
     assert get_origin(annotation) is Literal, f"kind is a {annotation}, not a Literal"
     assert len(get_args(annotation)) == 1, "kind has several values"
     assert component.spec.model_fields["kind"].default == component.kind, "kind has another default"
-    pattern = "[a-z][a-z0-9_]*" if _is_built_in(component) else r"[a-z][a-z0-9_]*\.[a-z][a-z0-9_]*"
+    built_in = component.spec.__module__.startswith("crowdbot.plugins.")
+    pattern = "[a-z][a-z0-9_]*" if built_in else r"[a-z][a-z0-9_]*\.[a-z][a-z0-9_]*"
     assert re.fullmatch(pattern, component.kind), f"'{component.kind}' does not match {pattern}"
 
 
@@ -185,10 +186,6 @@ CHECKS = (
     check_spec_is_light,
     check_entry_point_yields_it,
 )
-
-
-def _is_built_in(component: Component[Any]) -> bool:
-    return component.spec.__module__.startswith("crowdbot.plugins.")
 
 
 def _example(component: Component[Any], example: Any) -> ComponentSpec:

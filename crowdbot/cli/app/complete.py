@@ -63,12 +63,8 @@ def suite_ids(spec: str) -> list[str]:
         return list(_kept("ids", key, lambda: _expanded(spec)))
     lock = _packaged_folder() / f"{spec}.lock.json"
     if lock.is_file():
-        return _ids_of_lock(json.loads(lock.read_text(encoding="utf-8")))
+        return list(json.loads(lock.read_text(encoding="utf-8"))["scenarios"])
     return list(_kept("ids", f"{spec} {_state()}", lambda: _expanded(spec)))
-
-
-def _ids_of_lock(document: dict[str, Any]) -> list[str]:
-    return list(document["scenarios"])
 
 
 def _packaged_folder() -> Path:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
@@ -13,12 +13,14 @@ from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import InputError, UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from crowdbot.core.realism.near_robots.measure import RobotRealism
     from crowdbot.core.realism.near_robots.reference import RobotReference
     from crowdbot.core.registry.registry import Registry
     from crowdbot.core.trajectories.data_sets.homography import VideoScale
+
+T = TypeVar("T")
 
 #: Draws by default: the index of single draws varies by 0.02.
 DRAWS = 2
@@ -112,17 +114,29 @@ def _simulated(
     return found
 
 
+def of_recordings(
+    path: Path, read: Callable[[Sequence[Path]], tuple[list[T], list[str]]]
+) -> list[T]:
+    """Return what is read of a recording, or of all in a folder; say how many are left out.
+
+    Raises:
+        InputError: there are none, or one cannot be read.
+    """
+    files = recordings_under(path) if path.is_dir() else [path]
+    if not files:
+        raise InputError(f"{path}: there are no recordings (.mcap) in it")
+    found, without = read(files)
+    if without:
+        say(f"left out: {len(without)} of {len(files)} recordings; {without[0]}", err=True)
+    return found
+
+
 def _of_runs(path: Path, reference: RobotReference) -> RobotRealism:
     from crowdbot.core.realism.near_robots.encounters import encounters_of
     from crowdbot.core.realism.near_robots.measure import measure_encounters
     from crowdbot.core.realism.near_robots.recordings import clips_of_runs
 
-    files = recordings_under(path) if path.is_dir() else [path]
-    if not files:
-        raise InputError(f"{path}: there are no recordings (.mcap) in it")
-    clips, without = clips_of_runs(files)
-    if without:
-        say(f"left out: {len(without)} of {len(files)} recordings; {without[0]}", err=True)
+    clips = of_recordings(path, clips_of_runs)
     return measure_encounters(str(path), encounters_of(clips), reference)
 
 

@@ -61,15 +61,7 @@ def latched(scene: LiveScene, task: Task, seed: int, ns: int) -> list[LiveMessag
 
 
 def _header(scene: LiveScene, task: Task) -> RecordingHeader:
-    model = scene.model
-    robot = RobotHeader(
-        radius=model.footprint_radius,
-        mass=model.mass,
-        goal=task.goal,
-        base_height=model.base_height,
-        limits=model.limits,
-        footprint=model.footprint,
-    )
+    robot = RobotHeader.of(scene.model, task.goal)
     return with_frames(
         RecordingHeader(
             scenario=scene.scenario, robot=robot, sensors=scene.sensors, namespace=scene.namespace

@@ -73,7 +73,7 @@ def choose_planner(
             f"an object ({type(planner).__name__}) was made with its own"
         )
     if not missing_methods(planner):
-        return _of_object(cast(Planner, planner))
+        return _made_already(planner, type(planner), lambda: checked_planner(planner), planner)
     if callable(planner) and not hasattr(planner, "step"):
         return _of_function(planner)
     raise InputError(
@@ -128,10 +128,6 @@ class _AskedFunction:
     def step(self, obs: Observation) -> Command:
         """Return the function's result, which the host checks."""
         return cast(Command, self._function(obs))
-
-
-def _of_object(planner: Planner) -> PlannerChoice:
-    return _made_already(planner, type(planner), lambda: checked_planner(planner), planner)
 
 
 def _of_function(function: Callable[[Observation], Any]) -> PlannerChoice:

@@ -159,16 +159,9 @@ def _private(reading: Reading) -> Reading:
 def _protected(obs: Observation) -> Observation:
     """Return copies, since the simulation may change arrays that a planner keeps."""
     readings = {n: _private(r) for n, r in obs.readings.items()}
-    return Observation(
-        t=obs.t,
-        pose=obs.pose,
-        twist=obs.twist,
-        vy=obs.vy,
-        goal=obs.goal,
+    return replace(
+        obs,
         goal_zone=_read_only(obs.goal_zone),
         readings=MappingProxyType(readings),
-        log=obs.log,
-        draw=obs.draw,
         truth=obs.truth and obs.truth.copy(),
-        person=obs.person,
     )

@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
@@ -17,7 +18,7 @@ from dataclasses import dataclass
 from functools import cache
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from cmaes import CMA
@@ -47,16 +48,14 @@ _DRAWS, HELD_OUT_DRAWS = 7, (101, 102, 103)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FitTask:
-    """The definition of a fit, in plain values that can be sent to workers.
+class Fitted(ABC):
+    """The inputs of a fit, in plain values that can be sent to workers; computes its losses.
 
     Attributes:
-        crowd: name or path, as `open_crowd` takes it.
+        crowd: name or path, as `open_crowd` takes it, or a kind of response.
         overrides: ``key=value`` texts that override the crowd's parameters.
         plugins, allowed: as `discover` takes them.
         files: the user's recordings; empty: those shipped with crowdbot.
-        warm_up, duration: times for each corridor, s.
-        scale: of tables among the recordings.
     """
 
     crowd: str
@@ -64,6 +63,35 @@ class FitTask:
     plugins: tuple[str, ...] = ()
     allowed: tuple[str, ...] | None = None
     files: tuple[str, ...] = ()
+
+    @property
+    @abstractmethod
+    def ceiling(self) -> float:
+        """Return the score of one half of the recordings against the other."""
+
+    @property
+    @abstractmethod
+    def inputs(self) -> list[Any]:
+        """Return the values that identify this fit in its log."""
+
+    @abstractmethod
+    def loss(self, overrides: Sequence[str], seed: int) -> float:
+        """Return the loss with some parameters in one draw."""
+
+    @abstractmethod
+    def scores(self, overrides: Sequence[str]) -> tuple[float, float]:
+        """Return the scores against both halves of the recordings."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FitTask(Fitted):
+    """The definition of a fit of a crowd.
+
+    Attributes:
+        warm_up, duration: times for each corridor, s.
+        scale: of tables among the recordings.
+    """
+
     warm_up: float = 5.0
     duration: float = 7.0
     scale: VideoScale = AS_STATED
@@ -94,24 +122,6 @@ class FitTask:
         own = _walk(self, overrides, HELD_OUT_DRAWS, 6.0, 10.0)
         first, second = self.reference.halves
         return score(own, first).score, score(own, second).score
-
-
-class Fitted(Protocol):
-    """The inputs of a fit, in plain values that can be sent to workers; computes its losses."""
-
-    @property
-    def ceiling(self) -> float:
-        """Return the score of one half of the recordings against the other."""
-
-    @property
-    def inputs(self) -> list[Any]:
-        """Return the values that identify this fit in its log."""
-
-    def loss(self, overrides: Sequence[str], seed: int) -> float:
-        """Return the loss with some parameters in one draw."""
-
-    def scores(self, overrides: Sequence[str]) -> tuple[float, float]:
-        """Return the scores against both halves of the recordings."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

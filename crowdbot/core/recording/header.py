@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 import crowdbot.core.recording.messages as ros
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.person_task import TaskPerson
-from crowdbot.core.types.robot import RobotLimits
+from crowdbot.core.types.robot import RobotLimits, RobotModel
 from crowdbot.core.types.sensor import Pinhole, SensorInfo
 from crowdbot.errors import InputError
 
@@ -42,6 +42,14 @@ class RobotHeader:
     base_height: float = 0.0
     limits: RobotLimits | None = None
     footprint: Array | None = None
+
+    @classmethod
+    def of(cls, model: RobotModel, goal: tuple[float, float] | None) -> RobotHeader:
+        """Return the constants of a robot model with a goal, if it is a point."""
+        return cls(
+            radius=model.footprint_radius, mass=model.mass, goal=goal,
+            base_height=model.base_height, limits=model.limits, footprint=model.footprint,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,7 +98,11 @@ class RecordingHeader:
             sensors=[sensor_message(name, info) for name, info in self.sensors.items()],
             walls=ros.table(self.walls),
             goal_zone=ros.table(self.goal_zone),
-            cameras=[_camera_message(n, i.camera) for n, i in self.sensors.items() if i.camera],
+            cameras=[
+                ros.new("crowdbot_msgs/Camera", sensor=n, **asdict(i.camera))
+                for n, i in self.sensors.items()
+                if i.camera
+            ],
             privileged=[n for n, i in self.sensors.items() if i.privileged],
         )
 
@@ -250,17 +262,6 @@ def sensor_message(name: str, info: SensorInfo) -> Any:
         angles=ros.table(info.angles),
         range_min=info.range_min,
         range_max=info.range_max,
-    )
-
-
-def _camera_message(sensor: str, camera: Pinhole) -> Any:
-    return ros.new(
-        "crowdbot_msgs/Camera",
-        sensor=sensor,
-        width=camera.width,
-        height=camera.height,
-        focal=camera.focal,
-        colour=camera.colour,
     )
 
 

@@ -178,7 +178,8 @@ def _conditions(runs: Sequence[RunRow]) -> Iterator[Finding]:
     for name in sorted(names):
         if len({found.get(name, "") for found in different.values()}) == 1:
             continue
-        kind = "libraries" if name in _FILES else _kind_of(name)
+        part = name.partition(".")[0]
+        kind = "libraries" if name in _FILES else _CONDITIONS.get(part, "condition")
         groups = [("", runs)] if kind in _EVERYWHERE else _grouped(runs, _scenario)
         for scenario, group in groups:
             subject = f"{name}, {scenario}" if scenario else name
@@ -190,10 +191,6 @@ def _conditions(runs: Sequence[RunRow]) -> Iterator[Finding]:
                 return all_conditions[r.run_id].get(name, "")
 
             yield _finding(kind, subject, group, value)
-
-
-def _kind_of(condition: str) -> str:
-    return _CONDITIONS.get(condition.partition(".")[0], "condition")
 
 
 def _head(name: str) -> str:

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, cast, overload
 import numpy as np
 from pydantic import ValidationError
 
-from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scoring.metric import Metric, References
 from crowdbot.core.support.arguments import expect, mapping_of, texts_of
@@ -254,18 +253,6 @@ def _complaint(component: Component[MetricSpec], where: Sequence[int | str], pro
     return f"metric '{component.kind}', parameter '{'.'.join(map(str, where))}': {problem}"
 
 
-def build_metric(registry: Registry, spec: MetricSpec, call: PluginCall | None = None) -> Metric:
-    """Build the metric that a spec describes.
-
-    Args:
-        call: call boundary to its plugin; default: a new one.
-
-    Raises:
-        PluginError: the metric cannot be built, or is not a metric.
-    """
-    return registry.build(spec, _checked_metric, call=call)
-
-
 def _checked_metric(metric: object) -> Metric:
     if not callable(getattr(metric, "score", None)):
         raise PluginError(f"build returned a {type(metric).__name__}, which has no score")
@@ -281,7 +268,7 @@ def _scores_of(
 ) -> list[Score]:
     """Run one metric; any error in it is its plugin's failure."""
     call = registry.plugin_call(spec, passes=PluginError)
-    metric = build_metric(registry, spec, call)
+    metric = registry.build(spec, _checked_metric, call=call)
     with call("score"):
         answer: object = metric.score(run, refs)
         if not isinstance(answer, Iterable):

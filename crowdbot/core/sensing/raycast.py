@@ -21,13 +21,20 @@ from crowdbot.core.types.arrays import Array
 @kernel
 def segment_gap(wall: Array, x: float, y: float) -> float:
     """Return the distance from a point to a segment, m."""
+    dx, dy = from_segment(wall, x, y)
+    return math.hypot(dx, dy)
+
+
+@kernel
+def from_segment(wall: Array, x: float, y: float) -> tuple[float, float]:
+    """Return the vector from the nearest point of a segment to a point, m."""
     ex, ey = wall[2] - wall[0], wall[3] - wall[1]
     px, py = x - wall[0], y - wall[1]
     square = ex * ex + ey * ey
     s = 0.0
     if square > 0.0:
         s = min(1.0, max(0.0, (px * ex + py * ey) / square))
-    return math.hypot(px - s * ex, py - s * ey)
+    return px - s * ex, py - s * ey
 
 
 @kernel

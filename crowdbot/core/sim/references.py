@@ -72,18 +72,11 @@ def _record_alone(setup: RunSetup) -> Outcome:
 
 def setup_of(request: Request, reference: Reference, folder: Path) -> RunSetup:
     """Return the setup of a calibration run; only data for scores is recorded."""
-    return RunSetup(
-        scenario=reference.trial.scenario,
-        agents=reference.trial.people.agents,
-        registry=request.registry,
-        choice=request.choice,
-        seed=request.seed,
+    return RunSetup.of(
+        request,
+        reference.trial,
         recording=folder / files.RECORDING,
         stage=reference.name.replace("_", " "),
-        progress=request.progress,
-        stop=request.stop,
-        on_hang=request.on_hang,
-        on_begin=request.on_begin,
         options=replace(request.options, record="none"),
         hashes=provenance.recording_hashes(reference.identity),
     )

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,8 +24,9 @@ from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.recording.watcher import Watcher
 from crowdbot.core.recording.writer import RecordingWriter
 from crowdbot.core.registry.registry import Registry
+from crowdbot.core.runs.identity import Trial
 from crowdbot.core.runs.outcome import Outcome, Progress
-from crowdbot.core.runs.run import OnBegin, OnCrowd
+from crowdbot.core.runs.run import OnBegin, OnCrowd, Request
 from crowdbot.core.runs.run_options import USUAL, RunOptions
 from crowdbot.core.sim.build_crowd import build_crowd
 from crowdbot.core.sim.crowd_only import run_crowd
@@ -56,6 +58,19 @@ class RunSetup:
     watchers: Sequence[Watcher] = ()
     on_begin: OnBegin | None = None
     on_crowd: OnCrowd | None = None
+
+    @classmethod
+    def of(cls, request: Request, trial: Trial, **own: Any) -> RunSetup:
+        """Return the setup of a recording for a request.
+
+        Args:
+            trial: its scenario and people.
+            own: fields that the request does not give, or gives otherwise.
+        """
+        same = ("registry", "choice", "seed", "options", "progress", "stop", "on_hang", "on_begin")
+        given = {name: getattr(request, name) for name in same}
+        people = trial.people.agents
+        return cls(**{**given, "scenario": trial.scenario, "agents": people, **own})
 
 
 def record_crowd(setup: RunSetup, duration: float) -> Outcome:

@@ -313,20 +313,12 @@ def _finish(folder: Path, record: RunRecord, written: Written | None) -> RunReco
 
 
 def _setup(request: Request, prepared: Prepared, folder: Path, identity: RunIdentity) -> RunSetup:
-    return RunSetup(
-        scenario=prepared.run.scenario,
-        agents=prepared.run.people.agents,
-        registry=request.registry,
-        choice=request.choice,
-        seed=request.seed,
+    return RunSetup.of(
+        request,
+        prepared.run,
         recording=folder / files.RECORDING,
-        options=request.options,
         stage="run",
-        progress=request.progress,
-        stop=request.stop,
-        on_hang=request.on_hang,
         hashes=provenance.recording_hashes(identity),
         watchers=request.watchers,
-        on_begin=request.on_begin,
         on_crowd=request.on_crowd,
     )

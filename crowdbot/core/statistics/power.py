@@ -19,7 +19,7 @@ from crowdbot.core.statistics.clusters import Floats
 from crowdbot.core.statistics.comparison import reach
 from crowdbot.core.statistics.estimate import Estimate
 from crowdbot.core.statistics.judged import ComparisonVerdict, judge
-from crowdbot.core.statistics.sample_size import MOST_DRAWS
+from crowdbot.core.statistics.sample_size import fewest
 from crowdbot.core.statistics.sign_flip import least_p, p_value
 from crowdbot.core.statistics.table import Name, Table
 
@@ -157,16 +157,7 @@ class _Rows:
         low = strata + 1
         while least_p(low) > 1.0 - self.level:
             low += 1
-        high = low
-        while not self._finds(size, deviation, high, strata):
-            if high > MOST_DRAWS:
-                return None
-            low, high = high, 2 * high
-        while high - low > 1:
-            middle = (low + high) // 2
-            finds = self._finds(size, deviation, middle, strata)
-            low, high = (low, middle) if finds else (middle, high)
-        return high
+        return fewest(low, lambda draws: self._finds(size, deviation, draws, strata))
 
     def _finds(self, size: float, deviation: float, draws: int, strata: int) -> bool:
         return size >= deviation / math.sqrt(draws) * reach(draws - strata, self.level)

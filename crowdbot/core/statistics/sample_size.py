@@ -9,6 +9,7 @@ power 0.8, from the observed standard error, which falls with the square root of
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from crowdbot.core.scoring.four_scores import is_main
@@ -98,18 +99,21 @@ def draws_needed(comparison: Comparison, tests: int, alpha: float, level: float)
     strict = 1.0 - alpha / tests
     spread = error * math.sqrt(comparison.draws)  # standard error of one draw
     low = max(2, least_draws(tests, alpha))
-    if _finds(size, spread, low, strict):
-        return low
-    high = 2 * low
-    while not _finds(size, spread, high, strict):
+    return fewest(low, lambda n: size >= spread / math.sqrt(n) * reach(n - 1, strict))
+
+
+def fewest(low: int, suffice: Callable[[int], bool]) -> int | None:
+    """Return the smallest number of draws, from ``low`` on, that suffices; more do, too.
+
+    Returns:
+        None if more than `MOST_DRAWS` would be needed.
+    """
+    high = low
+    while not suffice(high):
         if high > MOST_DRAWS:
             return None
         low, high = high, 2 * high
     while high - low > 1:
         middle = (low + high) // 2
-        low, high = (low, middle) if _finds(size, spread, middle, strict) else (middle, high)
+        low, high = (low, middle) if suffice(middle) else (middle, high)
     return high
-
-
-def _finds(size: float, spread: float, draws: int, level: float) -> bool:
-    return size >= spread / math.sqrt(draws) * reach(draws - 1, level)

@@ -37,7 +37,7 @@ def around_floor(floor: list[Any], heights: Heights) -> tuple[tuple[Face, ...], 
         x0, y0, x1, y1 = shapely.total_bounds(floor)
         block = shapely.box(x0 - _BEHIND, y0 - _BEHIND, x1 + _BEHIND, y1 + _BEHIND)
         return (), tuple(_solids([block.difference(shapely.union_all(floor))], heights))
-    faces = tuple(_face(p, heights) for p in outer)
+    faces = tuple(Face(points=_closed(p.exterior), heights=heights) for p in outer)
     holes = [shapely.Polygon(h) for p in floor for h in p.interiors]
     return faces, tuple(_solids([_without(h, inner) for h in holes], heights))
 
@@ -101,7 +101,3 @@ def _ring(ring: Any) -> outlines.Outline:
 def _closed(ring: Any) -> outlines.Outline:
     outline = _ring(ring)
     return (*outline, outline[0])
-
-
-def _face(polygon: Any, heights: Heights) -> Face:
-    return Face(points=_closed(polygon.exterior), heights=heights)

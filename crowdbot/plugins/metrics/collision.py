@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Literal
 
-from crowdbot.plugin import MetricSpec, declare_metric
-from crowdbot.plugins.metrics.parameters import ContactTol, JumpSpeed, ReleaseGap, ZeroTol
+from crowdbot.plugin import declare_metric
+from crowdbot.plugins.metrics.parameters import ContactMetricSpec, ZeroTol
 
 declare = partial(
     declare_metric,
@@ -18,13 +18,10 @@ declare = partial(
 )
 
 
-class CollisionCountSpec(MetricSpec):
+class CollisionCountSpec(ContactMetricSpec):
     """Contacts of the robot with people; walls are not counted."""
 
     kind: Literal["collision_count"] = "collision_count"
-    contact_tol: ContactTol
-    release_gap: ReleaseGap
-    jump_speed: JumpSpeed
 
 
 COLLISION_COUNT = declare(
@@ -36,13 +33,10 @@ COLLISION_COUNT = declare(
 )
 
 
-class CollisionSeveritySpec(MetricSpec):
+class CollisionSeveritySpec(ContactMetricSpec):
     """Energy of the robot's contacts with people."""
 
     kind: Literal["collision_severity"] = "collision_severity"
-    contact_tol: ContactTol
-    release_gap: ReleaseGap
-    jump_speed: JumpSpeed
 
 
 COLLISION_SEVERITY = declare(
@@ -60,13 +54,10 @@ COLLISION_SEVERITY = declare(
 )
 
 
-class CollisionRateSpec(MetricSpec):
+class CollisionRateSpec(ContactMetricSpec):
     """Contacts with people per time, and per length of the robot's path."""
 
     kind: Literal["collision_rate"] = "collision_rate"
-    contact_tol: ContactTol
-    release_gap: ReleaseGap
-    jump_speed: JumpSpeed
     zero_tol: ZeroTol
 
 
@@ -80,13 +71,10 @@ COLLISION_RATE = declare(
 )
 
 
-class CollisionsAtFaultSpec(MetricSpec):
+class CollisionsAtFaultSpec(ContactMetricSpec):
     """Contacts with people, split by who caused them."""
 
     kind: Literal["collisions_at_fault"] = "collisions_at_fault"
-    contact_tol: ContactTol
-    release_gap: ReleaseGap
-    jump_speed: JumpSpeed
 
 
 COLLISIONS_AT_FAULT = declare(

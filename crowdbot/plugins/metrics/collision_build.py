@@ -21,18 +21,10 @@ from crowdbot.plugin.for_metrics import (
     touching,
 )
 from crowdbot.plugins.metrics.declared_build import RobotMetric
-from crowdbot.plugins.metrics.task import SuccessNoCollisionSpec
+from crowdbot.plugins.metrics.parameters import ContactMetricSpec
 
 #: Tolerance of the fault rule, m/s and m²/s, so that rounding does not decide.
 TOLERANCE = 1e-9
-
-_Spec = (
-    specs.CollisionCountSpec
-    | specs.CollisionSeveritySpec
-    | specs.CollisionRateSpec
-    | specs.CollisionsAtFaultSpec
-    | SuccessNoCollisionSpec
-)
 
 
 class CollisionCount(RobotMetric[specs.CollisionCountSpec]):
@@ -112,7 +104,7 @@ class CollisionsAtFault(RobotMetric[specs.CollisionsAtFaultSpec]):
         return [self.factory.ok("robot", robot), self.factory.ok("person", len(found) - robot)]
 
 
-def events(run: Trajectories, spec: _Spec) -> PersonContacts:
+def events(run: Trajectories, spec: ContactMetricSpec) -> PersonContacts:
     """Return contacts with people up to the arrival.
 
     Taken from the contact table if there is one, else from the motion.

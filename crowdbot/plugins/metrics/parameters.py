@@ -11,6 +11,7 @@ from typing import Annotated
 from annotated_types import Ge, Le
 
 from crowdbot.plugin import (
+    MetricSpec,
     NonNegativeDuration,
     NonNegativeLength,
     NonNegativeSpeed,
@@ -166,3 +167,20 @@ DtwThreshold = Annotated[
     default(1.0, "Paths this far apart on average score 1/e, m."),
 ]
 DtwSpacing = Annotated[PositiveLength, default(0.25, "Distance of points on both paths, m.")]
+
+
+class ContactMetricSpec(MetricSpec):
+    """Abstract metric of contacts."""
+
+    contact_tol: ContactTol
+    release_gap: ReleaseGap
+    jump_speed: JumpSpeed
+
+
+class HorizonMetricSpec(MetricSpec):
+    """Abstract metric of contacts that are foreseen within a horizon."""
+
+    risk_horizon: RiskHorizon
+    contact_tol: ContactTol
+    rel_speed_tol: RelSpeedTol
+    jump_speed: JumpSpeed

@@ -6,21 +6,22 @@ from functools import partial
 from typing import Literal
 
 from crowdbot.plugin import MetricSpec, declare_metric
-from crowdbot.plugins.metrics.parameters import ContactTol, JumpSpeed, RelSpeedTol, RiskHorizon
+from crowdbot.plugins.metrics.parameters import (
+    ContactTol,
+    HorizonMetricSpec,
+    JumpSpeed,
+    RelSpeedTol,
+)
 
 declare = partial(
     declare_metric, category="collision", minimum=0.0, better="lower", spec_version=2, unit="s"
 )
 
 
-class RiskSpec(MetricSpec):
+class RiskSpec(HorizonMetricSpec):
     """Imminence of the next collision, summed over the run."""
 
     kind: Literal["risk"] = "risk"
-    risk_horizon: RiskHorizon
-    contact_tol: ContactTol
-    rel_speed_tol: RelSpeedTol
-    jump_speed: JumpSpeed
 
 
 RISK = declare(
@@ -37,14 +38,10 @@ RISK = declare(
 )
 
 
-class ExpectedSeveritySpec(MetricSpec):
+class ExpectedSeveritySpec(HorizonMetricSpec):
     """Imminence of the next collision, weighted by the squared relative speed."""
 
     kind: Literal["expected_severity"] = "expected_severity"
-    risk_horizon: RiskHorizon
-    contact_tol: ContactTol
-    rel_speed_tol: RelSpeedTol
-    jump_speed: JumpSpeed
 
 
 EXPECTED_SEVERITY = declare(
@@ -59,14 +56,10 @@ EXPECTED_SEVERITY = declare(
 )
 
 
-class TimeExposedSpec(MetricSpec):
+class TimeExposedSpec(HorizonMetricSpec):
     """Time during which a collision is nearer than the horizon."""
 
     kind: Literal["time_exposed"] = "time_exposed"
-    risk_horizon: RiskHorizon
-    contact_tol: ContactTol
-    rel_speed_tol: RelSpeedTol
-    jump_speed: JumpSpeed
 
 
 TIME_EXPOSED = declare(
@@ -77,14 +70,10 @@ TIME_EXPOSED = declare(
 )
 
 
-class IntegratedTimeToCollisionSpec(MetricSpec):
+class IntegratedTimeToCollisionSpec(HorizonMetricSpec):
     """Shortfall of the time to collision below the horizon, integrated over the run."""
 
     kind: Literal["integrated_time_to_collision"] = "integrated_time_to_collision"
-    risk_horizon: RiskHorizon
-    contact_tol: ContactTol
-    rel_speed_tol: RelSpeedTol
-    jump_speed: JumpSpeed
 
 
 INTEGRATED_TIME_TO_COLLISION = declare(

@@ -22,13 +22,10 @@ SUCCESS = declare(
 )
 
 
-class SuccessNoCollisionSpec(MetricSpec):
+class SuccessNoCollisionSpec(parameters.ContactMetricSpec):
     """1 if the robot arrived without touching anyone, else 0."""
 
     kind: Literal["success_no_collision"] = "success_no_collision"
-    contact_tol: parameters.ContactTol
-    release_gap: parameters.ReleaseGap
-    jump_speed: parameters.JumpSpeed
 
 
 SUCCESS_NO_COLLISION = declare(

@@ -6,18 +6,15 @@ from functools import partial
 from typing import Literal
 
 from crowdbot.plugin import MetricSpec, declare_metric
-from crowdbot.plugins.metrics.parameters import ContactTol, JumpSpeed, ReleaseGap
+from crowdbot.plugins.metrics.parameters import ContactMetricSpec
 
 declare = partial(declare_metric, category="wall", unit="m", better="higher")
 
 
-class WallContactCountSpec(MetricSpec):
+class WallContactCountSpec(ContactMetricSpec):
     """Contacts of the robot with walls."""
 
     kind: Literal["wall_contact_count"] = "wall_contact_count"
-    contact_tol: ContactTol
-    release_gap: ReleaseGap
-    jump_speed: JumpSpeed
 
 
 WALL_CONTACT_COUNT = declare(

@@ -12,8 +12,8 @@ import crowdbot.cli.shared.options as shared
 from crowdbot.cli.output.plugin_table import table
 from crowdbot.cli.output.say import say
 from crowdbot.cli.shared.option import option, switch
+from crowdbot.cli.shared.robot_realism import of_recordings
 from crowdbot.cli.shared.run_arguments import AsJson
-from crowdbot.core.runs.run_directory import recordings_under
 from crowdbot.core.support.atomic_write import atomic_write
 from crowdbot.errors import InputError, UsageError
 
@@ -136,13 +136,7 @@ def _of_runs(path: Path, beside: RealismReference) -> Realism:
     from crowdbot.core.realism.measure import measure_met
     from crowdbot.core.realism.recordings import read_runs
 
-    files = recordings_under(path) if path.is_dir() else [path]
-    if not files:
-        raise InputError(f"{path}: there are no recordings (.mcap) in it")
-    tracks, without = read_runs(files)
-    if without:
-        say(f"left out: {len(without)} of {len(files)} recordings; {without[0]}", err=True)
-    return measure_met(str(path), [tracks], beside)
+    return measure_met(str(path), [of_recordings(path, read_runs)], beside)
 
 
 def _json(measured: Sequence[Realism]) -> str:

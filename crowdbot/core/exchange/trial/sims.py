@@ -30,16 +30,12 @@ _RVO = (
 )
 
 
-def _policy_id(item: Item) -> int:
-    return item.whole(0)
-
-
 SIMS: Mapping[str, RowTable] = {
     "UMANSconfig": RowTable(
         "UMANSconfig",
         (
             _SHARED,
-            Row("@PolicyID", "crowd.agents.policy", read=_policy_id),
+            Row("@PolicyID", "crowd.agents.policy", read=lambda item: item.whole(0)),
             _RADIUS,
             Row("@prefered_speed", "crowd.agents.speed", read=limited),
             Row("@max_speed", "crowd.agents.max_speed", read=limited),

@@ -19,10 +19,6 @@ def limited(item: Item) -> float:
     return min(item.number(1e-9, 3.5e38), UNLIMITED)
 
 
-def _mass(item: Item) -> float:
-    return item.number(1e-6)
-
-
 AGENT = RowTable(
     "Agent",
     (
@@ -36,7 +32,7 @@ AGENT = RowTable(
             read=lambda item: "remove" if item.truth() else "stop"),
         Row("@mass", "crowd.policies.contact_stiffness",
             "a factor of contact forces there, not kg: the agent's policy is a copy whose contact, "
-            "and forces of gradient policies, are divided by it", _mass),
+            "and forces of gradient policies, are divided by it", lambda item: item.number(1e-6)),
         Row("pos", "crowd.agents.x", read=lambda item: point(item)),
         Row("goal", "crowd.agents.goals", read=lambda item: point(item)),
     ),

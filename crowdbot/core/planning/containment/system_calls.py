@@ -13,7 +13,7 @@ import errno
 import os
 import platform
 import struct
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
@@ -167,8 +167,8 @@ def _program(*, network: bool, signals: bool) -> list[bytes]:
     program += only("clone", _masked(0, _NEW_SPACES, 0))
     for name in ("clone3", "openat2"):  # their arguments are out of reach; libraries use others
         program += only(name, [_do(_RETURN, _UNKNOWN)])
-    program += only("fcntl", _none_of(1, _FCNTL))
-    program += only("ioctl", [*_none_of_kinds(1), *_none_of(1, _IOCTL)])
+    program += only("fcntl", _one_of(1, _FCNTL, _DENY, _ALLOW))
+    program += only("ioctl", [*_none_of_kinds(1), *_one_of(1, _IOCTL, _DENY, _ALLOW)])
     for name, place in (("open", 1), ("openat", 2)):  # cutting a file that is opened for reading
         program += only(name, _masked_not(place, _O_ACCESS | _O_TRUNCATE, _O_TRUNCATE))
     return [*program, _do(_RETURN, _ALLOW)]
@@ -187,16 +187,12 @@ def _load(argument: int | None = None) -> bytes:
     return _do(_LOAD, _NUMBER if argument is None else _ARGUMENTS + 8 * argument)
 
 
-def _one_of(argument: int, values: Iterable[int]) -> list[bytes]:
-    allowed = list(values)
-    tests = [_jump(_EQUAL, value, len(allowed) - k, 0) for k, value in enumerate(allowed)]
-    return [_load(argument), *tests, _do(_RETURN, _DENY), _do(_RETURN, _ALLOW)]
-
-
-def _none_of(argument: int, values: Iterable[int]) -> list[bytes]:
-    denied = list(values)
-    tests = [_jump(_EQUAL, value, len(denied) - k, 0) for k, value in enumerate(denied)]
-    return [_load(argument), *tests, _do(_RETURN, _ALLOW), _do(_RETURN, _DENY)]
+def _one_of(
+    argument: int, values: Sequence[int], then: int = _ALLOW, otherwise: int = _DENY
+) -> list[bytes]:
+    """Return one answer if an argument has one of the values, and the other one if not."""
+    tests = [_jump(_EQUAL, value, len(values) - k, 0) for k, value in enumerate(values)]
+    return [_load(argument), *tests, _do(_RETURN, otherwise), _do(_RETURN, then)]
 
 
 def _unless(argument: int, value: int) -> list[bytes]:

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core.realism.calibrate import HELD_OUT_DRAWS, digest, registry_of
+from crowdbot.core.realism.calibrate import HELD_OUT_DRAWS, Fitted, digest, registry_of
 from crowdbot.core.realism.near_robots.encounters import RobotEncounter, encounters_of
 from crowdbot.core.realism.near_robots.measure import measure
 from crowdbot.core.realism.near_robots.recordings import read_clips
@@ -27,21 +27,8 @@ _WORST = 1.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RobotFitTask:
-    """The definition of a fit of a response, in plain values that can be sent to workers.
-
-    Attributes:
-        crowd: a kind of response, or a crowd as `open_crowd` takes it.
-        overrides: ``key=value`` texts that override the crowd's parameters.
-        plugins, allowed: as `discover` takes them.
-        files: the user's recordings; empty: the statistics shipped with crowdbot.
-    """
-
-    crowd: str
-    overrides: tuple[str, ...] = ()
-    plugins: tuple[str, ...] = ()
-    allowed: tuple[str, ...] | None = None
-    files: tuple[str, ...] = ()
+class RobotFitTask(Fitted):
+    """The definition of a fit of a response to robots."""
 
     @property
     def ceiling(self) -> float:

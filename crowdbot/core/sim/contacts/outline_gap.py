@@ -6,6 +6,7 @@ import math
 
 from crowdbot.core.crowd.contact.geometry import nearest_on_segment
 from crowdbot.core.crowd.contact.robot_contact import extent_of, from_outline
+from crowdbot.core.sensing.raycast import from_segment
 from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.types.arrays import Array
 
@@ -20,7 +21,7 @@ def gap_to_walls(walls: Array, pillars: Array, x: float, y: float) -> float:
     """Return the distance from a point to the nearest wall or pillar, m; inf if there is none."""
     nearest = math.inf
     for i in range(walls.shape[0]):
-        dx, dy = _from_wall(walls, i, x, y)
+        dx, dy = from_segment(walls[i], x, y)
         if dx * dx + dy * dy <= nearest * nearest * _CLEARLY:  # roots are expensive
             nearest = min(nearest, math.hypot(dx, dy))
     for i in range(pillars.shape[0]):
@@ -52,7 +53,7 @@ def _gap(
     """Like `outline_gap`, of an outline with corners; c, s: cosine and sine of the heading."""
     nearest, extent = math.inf, extent_of(outline)
     for i in range(walls.shape[0]):
-        dx, dy = _from_wall(walls, i, x, y)
+        dx, dy = from_segment(walls[i], x, y)
         if dx * dx + dy * dy > (nearest + extent + _SLACK) ** 2:
             continue
         ax, ay = _into(walls[i, 0], walls[i, 1], x, y, c, s)
@@ -77,7 +78,7 @@ def is_clear(
         c, s: cosine and sine of the heading; not used for a disc.
     """
     for i in range(walls.shape[0]):
-        dx, dy = _from_wall(walls, i, x, y)
+        dx, dy = from_segment(walls[i], x, y)
         if dx * dx + dy * dy > (max(0.0, least) + extent + _SLACK) ** 2:
             continue
         if outline.shape[0] == 0:
@@ -91,18 +92,6 @@ def is_clear(
     if outline.shape[0] == 0:
         return gap_to_walls(walls[:0], pillars, x, y) >= least
     return _gap(walls[:0], pillars, outline, x, y, c, s) >= least
-
-
-@kernel
-def _from_wall(walls: Array, i: int, x: float, y: float) -> tuple[float, float]:
-    """Return the vector from the nearest point of a wall to a point, m."""
-    ex, ey = walls[i, 2] - walls[i, 0], walls[i, 3] - walls[i, 1]
-    px, py = x - walls[i, 0], y - walls[i, 1]
-    square = ex * ex + ey * ey
-    s = 0.0
-    if square > 0.0:
-        s = min(1.0, max(0.0, (px * ex + py * ey) / square))
-    return px - s * ex, py - s * ey
 
 
 @kernel

@@ -137,14 +137,7 @@ def header_of(setup: RunSetup, built: BuiltRun) -> RecordingHeader:
     return RecordingHeader(
         scenario=built.scenario.id,
         hashes=setup.hashes,
-        robot=RobotHeader(
-            radius=model.footprint_radius,
-            mass=model.mass,
-            goal=task.goal if target is None else None,
-            base_height=model.base_height,
-            limits=model.limits,
-            footprint=model.footprint,
-        ),
+        robot=RobotHeader.of(model, task.goal if target is None else None),
         sensors=built.infos,
         walls=built.parts.walls[built.parts.wall_heights[:, 0] < model.height],
         goal_zone=task.goal_zone if built.robot.task.zone is not None else None,

@@ -41,7 +41,8 @@ def pushed_on(
         presses = _presses(run, there, sample, int(contacts.agent[k]), rule, jump_speed)
         presses &= ~_shoved(run, there, sample, beside, jump_speed)
         speed = _speed_before(run, contacts, k, jump_speed)
-        pushes[k] = _too_much(there.closing, since, _lengths(run.t)[sample], presses, speed, rule)
+        lasts = np.diff(run.t, prepend=run.t[0])[sample]
+        pushes[k] = _too_much(there.closing, since, lasts, presses, speed, rule)
     return pushes
 
 
@@ -104,7 +105,3 @@ def _shoved(
             px, py = (p[sample, agent] for p in (pair.px, pair.py))
             shoved |= both & (px * there.nx + py * there.ny < 0.0)
     return shoved
-
-
-def _lengths(t: Array) -> Array:
-    return np.diff(t, prepend=t[0])
