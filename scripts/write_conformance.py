@@ -7,8 +7,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
-from crowdbot.testing import all_kinds
-from crowdbot.testing.checks import BY_CATEGORY
+from crowdbot.testing.checks import BY_CATEGORY, OF_ALL_KINDS
 
 PAGE = Path(__file__).parent.parent / "docs" / "reference" / "conformance.md"
 HEAD = "| check | |\n|---|---|\n"
@@ -22,7 +21,7 @@ ORDER = (
 
 def page() -> str:
     """Return the page with each check and the first part of its docstring."""
-    groups = iter([all_kinds.CHECKS, *(BY_CATEGORY[category] for category in ORDER)])
+    groups = iter([OF_ALL_KINDS, *(BY_CATEGORY[category] for category in ORDER)])
     text = PAGE.read_text(encoding="utf-8")
     return _TABLE.sub(lambda _: HEAD + "".join(_rows(next(groups))), text)
 

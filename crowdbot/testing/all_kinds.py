@@ -175,19 +175,6 @@ def check_entry_point_yields_it(
     assert found == component, f"{known.owner(found).distribution} provides another {found.kind}"
 
 
-CHECKS = (
-    check_kind_is_a_name,
-    check_summary_is_a_line,
-    check_examples_validate,
-    check_round_trip,
-    check_fields_are_described,
-    check_unknown_field_is_refused,
-    check_build_resolves,
-    check_spec_is_light,
-    check_entry_point_yields_it,
-)
-
-
 def _example(component: Component[Any], example: Any) -> ComponentSpec:
     try:
         return _validated(component, example)

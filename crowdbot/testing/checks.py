@@ -5,10 +5,12 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from types import ModuleType
 from typing import Any
 from unittest import SkipTest
 
 import crowdbot.testing.all_kinds as all_kinds
+import crowdbot.testing.card as card
 import crowdbot.testing.commanded_motion as commanded_motion
 import crowdbot.testing.cost_function as cost_function
 import crowdbot.testing.crowd_policy as crowd_policy
@@ -24,18 +26,29 @@ from crowdbot.dsl.spec.component import Component
 
 Check = Callable[..., None]
 
-#: Category -> its own checks. Those of `all_kinds` apply to every category.
+
+def checks_in(module: ModuleType) -> tuple[Check, ...]:
+    """Return the checks of a module, in its order: its functions whose names begin so."""
+    found = vars(module).items()
+    return tuple(
+        f for name, f in found if name.startswith("check_") and f.__module__ == module.__name__
+    )
+
+
+#: Checks of every component.
+OF_ALL_KINDS = checks_in(all_kinds)
+#: Category -> its own checks.
 BY_CATEGORY: Mapping[str, tuple[Check, ...]] = {
-    "cost function": cost_function.CHECKS,
-    "crowd policy": crowd_policy.CHECKS,
-    "environment": environment.CHECKS,
-    "metric": metric.CHECKS,
-    "noise": noise.CHECKS,
+    "cost function": checks_in(cost_function),
+    "crowd policy": checks_in(crowd_policy),
+    "environment": checks_in(environment),
+    "metric": (*checks_in(metric), *checks_in(card)),
+    "noise": checks_in(noise),
     "observation": learning.OBSERVATION_CHECKS,
-    "planner": planner.CHECKS,
+    "planner": checks_in(planner),
     "reward": learning.REWARD_CHECKS,
-    "robot": (*robot.CHECKS, *commanded_motion.CHECKS),
-    "sensor": sensor.CHECKS,
+    "robot": (*checks_in(robot), *checks_in(commanded_motion)),
+    "sensor": checks_in(sensor),
 }
 
 #: Category -> check of the built object, which must pass before the others.
@@ -50,7 +63,7 @@ _BY_ITSELF = (robot.check_mass_agrees,)
 
 def checks_of(component: Component[Any]) -> tuple[Check, ...]:
     """Return all checks for a component, as functions of the component."""
-    return (*all_kinds.CHECKS, *BY_CATEGORY.get(component.category, ()))
+    return (*OF_ALL_KINDS, *BY_CATEGORY.get(component.category, ()))
 
 
 def checks_for(
@@ -91,7 +104,7 @@ def _wants_registry(check: Check) -> bool:
 
 def _before(check: Check, category: str) -> list[Check]:
     """Return the checks that must pass before this one makes sense."""
-    if check in all_kinds.CHECKS:
+    if check in OF_ALL_KINDS:
         return []
     found = [all_kinds.check_examples_validate, all_kinds.check_build_resolves]
     first = _FIRST.get(category)

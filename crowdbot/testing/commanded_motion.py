@@ -110,5 +110,3 @@ EMPTY_FLOOR = EnvironmentParts(
     zones={},
     portals={},
 )
-
-CHECKS = (check_commanded_motion,)

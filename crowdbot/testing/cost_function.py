@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -207,21 +207,6 @@ def check_rotation_invariant(component: Component[Any], registry: Registry | Non
         again = _total(cost, crowd_views.turned(view, _TURN), crowd_views.turn(velocities, _TURN))
         same = _near(_total(cost, view, velocities), again)
         assert same, f"turned by {_TURN} rad velocities cost something else"
-
-
-CHECKS: tuple[Callable[..., None], ...] = (
-    check_signatures,
-    check_costs_are_numbers,
-    check_excess_is_not_negative,
-    check_candidates_are_independent,
-    check_excess_stops_above_budget,
-    check_lower_bound_is_below_excess,
-    check_work_is_written,
-    check_gradient,
-    check_input_is_not_changed,
-    check_translation_invariant,
-    check_rotation_invariant,
-)
 
 
 def _costs(component: Component[Any], registry: Registry | None) -> Iterator[Cost]:

@@ -138,18 +138,6 @@ def check_time_step_is_no_unit(component: Component[Any], registry: Registry | N
         )
 
 
-CHECKS: tuple[Callable[..., None], ...] = (
-    check_answer_is_numbers,
-    check_nobody_and_one,
-    check_input_is_not_changed,
-    check_same_view_twice,
-    check_permutation_equivariant,
-    check_translation_invariant,
-    check_rotation_equivariant,
-    check_time_step_is_no_unit,
-)
-
-
 def _factories(component: Component[Any], registry: Registry | None) -> Iterator[Factory]:
     """Yield one factory per example; policies that need cost functions get ``ttca_dca``."""
     known = around(component, registry)

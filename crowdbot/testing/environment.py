@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -132,17 +132,6 @@ def check_runs(component: Component[Any], registry: Registry | None = None) -> N
         parts: EnvironmentParts = built(known, spec)
         x, y = viewpoints(parts)[0]
         assert_runs(scenario_in(known, spec, (x, y)), known)
-
-
-CHECKS: tuple[Callable[..., None], ...] = (
-    check_parts,
-    check_zones_and_portals,
-    check_zones_are_on_the_floor,
-    check_free_side_is_on_the_left,
-    check_is_closed,
-    check_same_spec_same_place,
-    check_runs,
-)
 
 
 def _parts(component: Component[Any], registry: Registry | None) -> Iterator[EnvironmentParts]:

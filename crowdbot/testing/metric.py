@@ -19,7 +19,6 @@ from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score
 from crowdbot.dsl.spec.component import Component
 from crowdbot.dsl.spec.component_specs import MetricSpec
-from crowdbot.testing.card import check_card_examples_run, check_card_says_what_the_scores_say
 from crowdbot.testing.scored import Scored, invariants_of, metric_of, scores_of, with_signals
 from crowdbot.testing.symmetries import (
     COMMAND_SYMMETRIES,
@@ -210,24 +209,6 @@ def check_rounding(component: Component[Any]) -> None:
                 _assert_robust(component, world, _perturbed_threshold(name, seed))
             except AssertionError as error:
                 raise AssertionError(f"{name}: {error}") from error
-
-
-CHECKS: tuple[Callable[[Component[Any]], None], ...] = (
-    check_declaration,
-    check_card_says_what_the_scores_say,
-    check_card_examples_run,
-    check_scores_are_well_formed,
-    check_degenerate_runs,
-    check_pure,
-    check_symmetries,
-    check_self_value,
-    check_refinement,
-    check_more_people,
-    check_masses,
-    check_teleports_add_nothing,
-    check_velocities_left_out,
-    check_rounding,
-)
 
 
 # ------------------------------------------------------------------------- details

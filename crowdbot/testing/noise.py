@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -98,15 +98,6 @@ def check_equal_draws_give_equal_errors(
         assert all(np.array_equal(a, b) for a, b in zip(first, again, strict=True)), (
             "the same reading got another error"
         )
-
-
-CHECKS: tuple[Callable[..., None], ...] = (
-    check_errors_are_numbers,
-    check_distances_are_unchanged,
-    check_draws_do_not_depend_on_distances,
-    check_random_says_whether_it_draws,
-    check_equal_draws_give_equal_errors,
-)
 
 
 def _generators(component: Component[Any], registry: Registry | None) -> Iterator[NoiseGenerator]:

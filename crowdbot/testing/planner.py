@@ -89,16 +89,6 @@ def check_goal_reached_at_start(
         _drive("the goal reached at the start", driver(AT_GOAL))
 
 
-CHECKS: tuple[Callable[..., None], ...] = (
-    check_commands_are_numbers,
-    check_commands_are_within_limits,
-    check_reset_is_deterministic,
-    check_runs_are_independent,
-    check_unreachable_goal,
-    check_goal_reached_at_start,
-)
-
-
 def _drivers(
     component: Component[Any], registry: Registry | None
 ) -> Iterator[Callable[[Course], Driven]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import fields
 from typing import Any
 
@@ -151,16 +151,6 @@ def check_stops_without_commands(
         assert robot is not None
         speed = float(np.abs(robot.v[-2]))
         assert speed < 0.05, f"{speed:.2f} m/s, {limits.command_timeout} s after the last command"
-
-
-CHECKS: tuple[Callable[..., None], ...] = (
-    check_model,
-    check_model_is_constant,
-    check_mass_agrees,
-    check_footprint_agrees,
-    check_drives_ahead,
-    check_stops_without_commands,
-)
 
 
 def _models(

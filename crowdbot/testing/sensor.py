@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import fields, replace
 from typing import Any
 
@@ -248,21 +248,6 @@ def check_message_has_its_type(component: Component[Any], registry: Registry | N
         header = getattr(ros.from_cdr(data, msgtype), "header", None)
         if header is not None:
             assert header.frame_id, "the header of its message has no frame"
-
-
-CHECKS: tuple[Callable[..., None], ...] = (
-    check_info,
-    check_reading_is_numbers,
-    check_readings_are_new,
-    check_equal_draws_give_equal_readings,
-    check_random_says_whether_it_draws,
-    check_exact_without_noise,
-    check_memory_is_all_it_keeps,
-    check_sees_people,
-    check_distances_are_true,
-    check_millimetres_are_the_reading,
-    check_message_has_its_type,
-)
 
 
 def _sensors(component: Component[Any], registry: Registry | None) -> Iterator[Any]:

@@ -29,7 +29,7 @@ from crowdbot.plugin import (
     declare_metric,
 )
 from crowdbot.testing import all_kinds, card, checks_of, metric, parametrize_with_checks
-from crowdbot.testing.checks import BY_CATEGORY, checks_for
+from crowdbot.testing.checks import BY_CATEGORY, OF_ALL_KINDS, checks_for, checks_in
 from tests.paths import ROOT
 from tests.testing.wrong import BUILT_IN
 
@@ -194,7 +194,7 @@ def test_variants_that_were_not_declared(build: Any) -> None:
 
 def test_a_sound_metric_passes(build: Any) -> None:
     build(lambda run, refs: float(run.t[-1] - run.t[0]))
-    for check in metric.CHECKS:
+    for check in checks_in(metric):
         if "card" not in check.__name__:
             check(component())
 
@@ -221,7 +221,7 @@ def test_expected_failures() -> None:
 
 def test_checks_say_what_to_do_and_the_page_lists_them() -> None:
     page = (DOCS / "conformance.md").read_text(encoding="utf-8")
-    groups = [all_kinds.CHECKS, *BY_CATEGORY.values()]
+    groups = [OF_ALL_KINDS, *BY_CATEGORY.values()]
     for check in (c for group in groups for c in group):
         text = inspect.getdoc(check)
         assert text is not None
@@ -237,7 +237,7 @@ def _as_listed() -> list[tuple[Any, ...]]:
     order = ("environment", "robot", "sensor", "noise", "planner", "crowd policy", "cost function",
              "metric", "observation", "reward")  # fmt: skip
     assert set(order) == set(BY_CATEGORY) == {c.category for c in CATEGORIES}
-    return [all_kinds.CHECKS, *(BY_CATEGORY[c] for c in order)]
+    return [OF_ALL_KINDS, *(BY_CATEGORY[c] for c in order)]
 
 
 @pytest.mark.slow

@@ -14,6 +14,7 @@ from crowdbot.plugin import EnvironmentParts, RobotLimits, RobotModel
 from crowdbot.plugins.robots.turtlebot2 import Turtlebot2Spec
 from crowdbot.plugins.robots.turtlebot2_build import build as turtlebot2
 from crowdbot.testing import environment, robot
+from crowdbot.testing.checks import checks_in
 from tests.testing.wrong import BUILT_IN, WrongEnvironment, WrongRobot, assert_fails, made
 
 # ------------------------------------------------------------------------ environments
@@ -85,7 +86,7 @@ def test_a_sound_place_passes() -> None:
         zones = {name: np.array(zone.polygon) for name, zone in spec.zones.items()}
         return parts(zones={"middle": ZONE, **zones})
 
-    for check in environment.CHECKS:
+    for check in checks_in(environment):
         check(made(WrongEnvironment, build), BUILT_IN)
 
 

@@ -28,6 +28,7 @@ from crowdbot.core.types.arrays import Array
 from crowdbot.plugins.crowd.cost_functions.rvo import RvoSpec
 from crowdbot.plugins.crowd.cost_functions.rvo_build import build as rvo
 from crowdbot.testing import checks_for, cost_function, crowd_policy
+from crowdbot.testing.checks import checks_in
 from tests.testing.wrong import BUILT_IN, WrongCost, WrongPolicy, assert_fails, made
 
 
@@ -87,7 +88,7 @@ def test_policies(check: Any, answer: Any, because: str) -> None:
 
 
 def test_a_sound_policy_passes() -> None:
-    for check in crowd_policy.CHECKS:
+    for check in checks_in(crowd_policy):
         check(policy(lambda view, dt: preferred(view)), BUILT_IN)
 
 
@@ -252,11 +253,11 @@ def test_compiled_costs(check: Any, changes: dict[str, Any], because: str) -> No
 
 def test_a_sound_cost_passes() -> None:
     sound = compiled()
-    for check in cost_function.CHECKS:
+    for check in checks_in(cost_function):
         check(sound, BUILT_IN)
     cost = replace(rvo(RvoSpec()), weight=2.0)
     component = made(WrongCost, lambda spec: cost)
-    for check in cost_function.CHECKS:
+    for check in checks_in(cost_function):
         check(component, BUILT_IN)
 
 

@@ -13,6 +13,7 @@ import pytest
 
 from crowdbot.plugin import Command, NoValidCommand, Observation
 from crowdbot.testing import planner
+from crowdbot.testing.checks import checks_in
 from tests.testing.wrong import BUILT_IN, WrongPlanner, assert_fails, made
 
 Step = Callable[[Any, Observation], Any]
@@ -84,7 +85,7 @@ def test_planners(check: Any, step: Step, because: str) -> None:
 
 @pytest.mark.parametrize("step", [_ahead, _stops, lambda s, o: Command(0.1 * s.rng.random(), 0.0)])
 def test_sound_planners_pass(step: Step) -> None:
-    for check in planner.CHECKS:
+    for check in checks_in(planner):
         check(driver(step), BUILT_IN)
 
 

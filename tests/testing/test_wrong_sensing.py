@@ -19,6 +19,7 @@ from crowdbot.plugins.sensors.lidar2d_build import build as lidar2d
 from crowdbot.plugins.sensors.rgbd_camera import RgbdCameraSpec
 from crowdbot.plugins.sensors.rgbd_camera_build import RgbdCamera
 from crowdbot.testing import noise, sensor
+from crowdbot.testing.checks import checks_in
 from crowdbot.testing.sensor_scenes import context
 from tests.testing.wrong import BUILT_IN, WrongNoise, WrongSensor, assert_fails, made
 
@@ -194,7 +195,7 @@ def test_messages_that_are_not_of_the_sensors_type() -> None:
 
 
 def test_a_sound_sensor_passes() -> None:
-    for check in sensor.CHECKS:
+    for check in checks_in(sensor):
         check(made_sensor(Nose), BUILT_IN)
 
 
