@@ -40,6 +40,8 @@ _MOST_NAMED = 12
 _SIDES = (("w", "h"), ("width", "height"), ("bb_width", "bb_height"))
 #: Least extent of x and z, m, if y seems to be the height.
 _FLAT = 0.5
+#: Least extent of z, m, if a camera seems to look along it.
+_AHEAD = 0.3
 
 
 def sentences(table: RawTable) -> list[str]:
@@ -126,7 +128,10 @@ def _boxes(table: RawTable, header: Sequence[str]) -> list[str]:
 def _height_is_y(
     table: RawTable, header: Sequence[str], cells: Callable[[str], Cells]
 ) -> list[str]:
-    """Return a sentence if y never changes and z does: motion capture and Unity have y upwards."""
+    """Return a sentence if x and y do not seem to span the floor.
+
+    Motion capture and Unity have y upwards, cameras look along z.
+    """
     z = next((column for column in header if column.lower() in ("z", "tz")), None)
     if z is None or not {"x", "y"} <= set(table.columns):
         return []
@@ -137,6 +142,11 @@ def _height_is_y(
         return []  # told where the column is read; nothing reads z
     spans = [float(np.nanmax(v) - np.nanmin(v)) if np.isfinite(v).any() else 0.0
              for v in (x, y, depth)]  # fmt: skip
+    if spans[2] > max(_AHEAD, 2.0 * max(spans[:2])):
+        return [
+            f"z changes by {spans[2]:.2g} m, more than x and y ({spans[0]:.2g} and {spans[1]:.2g} "
+            "m): the frame of a camera, which looks along z? Give it as x, and minus x as y"
+        ]
     if spans[1] > 0.0 or min(spans[0], spans[2]) < _FLAT:
         return []
     return [f"y is {y[0]:g} m in all rows, and z is not: is y upwards? Exchange their names"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -132,3 +133,14 @@ def test_tables_of_a_robot_that_are_none(tmp_path: Path, text: str, message: str
     (tmp_path / "a.csv").write_text(text)
     with pytest.raises(InputError, match=message):
         Trajectories.from_csv(tmp_path / "a.csv", robot_radius=0.2, robot_mass=5.0)
+
+
+def test_the_frame_of_a_camera_is_told(tmp_path: Path) -> None:
+    """A visual odometry moves along z; what drives on a floor may go over a ramp."""
+    for ahead, seen in ((0.1, True), (0.01, False)):
+        rows = [f"{k / 10} {0.02 * k} 0.001 {ahead * k} 0 0 0 1" for k in range(9)]
+        (tmp_path / "a.txt").write_text("\n".join(rows))
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            Trajectories.from_csv(tmp_path / "a.txt", robot_radius=0.2, robot_mass=5.0)
+        assert any("the frame of a camera" in str(w.message) for w in caught) == seen
