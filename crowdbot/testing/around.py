@@ -11,7 +11,7 @@ from typing import Any
 from unittest import SkipTest
 
 from crowdbot.core.registry.registry import Plugin, Registry, assemble, discover
-from crowdbot.core.scenarios.library import plugin_folders
+from crowdbot.core.scenarios.plugin_folders import plugin_folders
 from crowdbot.dsl.spec.assets import Asset
 from crowdbot.dsl.spec.component import Component
 from crowdbot.dsl.spec.component_specs import CrowdPolicySpec

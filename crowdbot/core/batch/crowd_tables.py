@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core.batch.array_tables import ArrayTable, ScratchPool
-from crowdbot.core.crowd.engine import CrowdEngine, DecisionGroup
+from crowdbot.core.crowd.decision_groups import DecisionGroup
+from crowdbot.core.crowd.engine import CrowdEngine
 from crowdbot.core.crowd.velocity_search.agent_costs import WORK
 from crowdbot.core.crowd.velocity_search.sampling import Sampler
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts, layers

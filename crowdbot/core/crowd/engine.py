@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ import crowdbot.core.crowd.state as s
 from crowdbot.core.crowd.agents import ONWARD, PORTAL, Agents
 from crowdbot.core.crowd.contact.robot_contact import DISC, R_W, RVX, RVY
 from crowdbot.core.crowd.contact.solid import LONGEST_STEP, MOST_OVERLAP, OUTSIDE
+from crowdbot.core.crowd.decision_groups import groups_by_policy, who_plans
 from crowdbot.core.crowd.desired_acceleration import desired_acceleration, relaxation_time_of
 from crowdbot.core.crowd.groups import forces_of, groups_of, hold_together
 from crowdbot.core.crowd.parameters import AgentParameters, Scratch, WorldParameters
@@ -41,20 +42,6 @@ _SEEN = np.array([0, 1, 2, 3, 5])  # columns of a robot used by policies
 #: Time of decisions in a situation of one's own, in ticks: late enough that people have reacted.
 LATER = 60 * TICKS_PER_SECOND
 _MOTION = np.isin(np.arange(8), [RVX, RVY, R_W])  # columns of its motion
-
-
-@dataclass(frozen=True, slots=True)
-class DecisionGroup:
-    """Agents with the same policy, who decide together.
-
-    Attributes:
-        foreign: True for a third-party policy; crowdbot's own never write to their inputs.
-    """
-
-    policy: CrowdPolicy
-    members: NDArray[np.bool_]
-    sees_robot: bool
-    foreign: bool
 
 
 class CrowdEngine:
@@ -97,8 +84,8 @@ class CrowdEngine:
             "pillars": immutable(world.pillars),
         }
         self.policies: Sequence[CrowdPolicy] = tuple(made)
-        self.groups = _groups(made, agents, _who_plans(agents, world))
-        self._groups_alone = _groups(made, agents, np.zeros(len(agents), np.bool_))
+        self.groups = groups_by_policy(made, agents, who_plans(agents, world))
+        self._groups_alone = groups_by_policy(made, agents, np.zeros(len(agents), np.bool_))
         strength = [getattr(p, "contact_stiffness", CONTACT_STIFFNESS) for p in made]
         self.ticks_per_decision = ticks(world.decision_rate)
         self._people = AgentParameters.of(
@@ -413,26 +400,3 @@ def _limits(policies: Sequence[CrowdPolicy], agents: Agents, world: CrowdWorld) 
     limit = np.maximum(radius - MOST_OVERLAP, least) if world.firm else least
     walks_through = np.array([getattr(p, "walks_through_walls", False) for p in policies], np.bool_)
     return np.where(walks_through[agents.policy], 0.0, limit) if len(agents) else limit
-
-
-def _who_plans(agents: Agents, world: CrowdWorld) -> NDArray[np.bool_]:
-    """Return (N,) True for agents whose policy sees robots: not those who notice robots late."""
-    return ~(agents.ignores_robot | agents.late) & world.response.shown_to_policies
-
-
-def _groups(
-    policies: Sequence[CrowdPolicy], agents: Agents, sees_robot: NDArray[np.bool_]
-) -> list[DecisionGroup]:
-    """Return groups of agents by policy, and by whether the policy sees robots."""
-    groups = []
-    for number, policy in enumerate(policies):
-        for sees in (True, False):
-            members = (agents.policy == number) & (sees_robot == sees)
-            if np.any(members):
-                groups.append(DecisionGroup(policy, members, sees, _is_foreign(policy)))
-    return groups
-
-
-def _is_foreign(policy: CrowdPolicy) -> bool:
-    without_checks = getattr(policy, "_policy", policy)
-    return not type(without_checks).__module__.startswith("crowdbot.")

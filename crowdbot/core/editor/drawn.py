@@ -10,8 +10,9 @@ from typing import Any
 
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.scenarios.library import installed, plugin_folders
+from crowdbot.core.scenarios.library import installed
 from crowdbot.core.scenarios.lock import population
+from crowdbot.core.scenarios.plugin_folders import plugin_folders
 from crowdbot.dsl.scenario.scenario import Scenario
 from crowdbot.dsl.suite.expand import expand_document, load_document
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark, Source

@@ -8,7 +8,6 @@ kind, are all disabled, and the error names them.
 from __future__ import annotations
 
 import sys
-from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, partial
@@ -18,8 +17,9 @@ from typing import Annotated, Any, TypeVar, Union, cast
 from pydantic import BaseModel, Field, SerializeAsAny, create_model
 
 from crowdbot.core.registry.build_reference import accepted, load_build
-from crowdbot.core.registry.component_list import ComponentsByKind, known_components, of_category
+from crowdbot.core.registry.component_list import ComponentsByKind, of_category
 from crowdbot.core.registry.entry_points import ALLOW, find_plugins
+from crowdbot.core.registry.name_collisions import disabled, kind_collisions, name_collisions
 from crowdbot.core.registry.narrowed_models import Models, models_of
 from crowdbot.core.registry.plugin import BUILTIN, Plugin
 from crowdbot.core.registry.plugin_boundary import Exceptions, PluginCall
@@ -308,48 +308,12 @@ def discover(
 
 def assemble(found: Sequence[Plugin]) -> Registry:
     """Disable name clashes and build the registry from the rest."""
-    plugins = _disable(found, _name_collisions(found))
-    plugins = _disable(plugins, _kind_collisions(plugins))
+    plugins = disabled(found, name_collisions(found))
+    plugins = disabled(plugins, kind_collisions(plugins))
     by_category = ComponentsByKind(
         [c.category for c in CATEGORIES], [p.components for p in plugins]
     )
     return Registry(tuple(plugins), by_category)
-
-
-def _name_collisions(plugins: Sequence[Plugin]) -> dict[int, str]:
-    """Return errors for duplicate names; crowdbot's own name is refused earlier."""
-    names = Counter(p.name for p in plugins if not p.error)
-    return {
-        i: f"E301 plugin name '{p.name}' is claimed by {_origins(plugins, p.name)}"
-        for i, p in enumerate(plugins)
-        if names[p.name] > 1 and not p.error
-    }
-
-
-def _origins(plugins: Sequence[Plugin], name: str) -> str:
-    return " and ".join(p.origin for p in plugins if p.name == name and not p.error)
-
-
-def _kind_collisions(plugins: Sequence[Plugin]) -> dict[int, str]:
-    owners: dict[tuple[str, str], list[int]] = {}
-    for i, plugin in enumerate(plugins):
-        for component in known_components(plugin.components):
-            owners.setdefault((component.category, component.kind), []).append(i)
-    errors = {}
-    for (category, kind), indices in owners.items():
-        if len(indices) > 1:
-            origins = " and ".join(plugins[i].origin for i in indices)
-            errors.update(
-                dict.fromkeys(indices, f"E301 {category} '{kind}' is provided by {origins}")
-            )
-    return errors
-
-
-def _disable(plugins: Sequence[Plugin], errors: Mapping[int, str]) -> list[Plugin]:
-    return [
-        replace(p, components=(), scenario_dirs=(), error=errors[i]) if i in errors else p
-        for i, p in enumerate(plugins)
-    ]
 
 
 @cache

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-import atexit
-import logging
 import os
 import re
-import shutil
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import cache, cached_property, partial
-from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from crowdbot.core.registry.plugin_boundary import PluginCall
 from crowdbot.core.registry.registry import Registry, registry_of
 from crowdbot.core.registry.registry_source import Whereabouts, whereabouts
+from crowdbot.core.scenarios.plugin_folders import _UNPACKED, plugin_folders
 from crowdbot.core.support.gc_throttle import throttled_gc
 from crowdbot.core.support.text_files import suggest_files
 from crowdbot.dsl.scenario.lock import LockFiles
@@ -27,16 +23,12 @@ from crowdbot.dsl.suite.expansion import Expansion
 from crowdbot.dsl.suite.installed import Installed
 from crowdbot.dsl.suite.suite import ParsedSuite
 from crowdbot.dsl.text.diagnostics import Diagnostic
-from crowdbot.errors import CrowdbotError, InputError, SpecError, UnknownNameError, nearest
+from crowdbot.errors import InputError, SpecError, UnknownNameError, nearest
 
 if TYPE_CHECKING:
-    from importlib.resources.abc import Traversable
+    pass
 
-_LOG = logging.getLogger("crowdbot")
 _BUILTIN = "builtin"
-#: Largest number of files in one plugin's folder, including subfolders.
-_MOST_FILES = 2000
-_UNPACKED = "crowdbot-unpacked-"
 #: Errors about something missing in all plugins: kind, metric, file.
 _UNKNOWN = ("E120", "E121", "E201")
 
@@ -300,64 +292,6 @@ def _packaged(roots: dict[str, list[Path]]) -> dict[str, Path]:
         for folder in folders
         for file in sorted(folder.glob("*.yaml"))
     }
-
-
-def plugin_folders(registry: Registry) -> dict[str, list[Path]]:
-    """Return plugin name -> its scenario folders; those in archives are unpacked.
-
-    Unreadable folders are left out with a warning; other plugins' suites remain.
-    """
-    roots: dict[str, list[Path]] = {}
-    for plugin in registry.plugins:
-        call = PluginCall(f"suites of {plugin.distribution or plugin.name}")
-        try:
-            with call("cannot be read"):
-                folders = [_real(f) for f in plugin.scenario_dirs if f.is_dir()]
-        except CrowdbotError as error:
-            _warn_once(f"{error}; they are left out")
-            continue
-        if folders:  # without folders, a plugin with a duplicate name would hide the other
-            roots[plugin.name] = folders
-    return roots
-
-
-@cache
-def _warn_once(text: str) -> None:
-    _LOG.warning("%s", text)
-
-
-def _real(folder: Any) -> Path:
-    return Path(os.fspath(folder)) if isinstance(folder, Path) else _unpacked(folder)
-
-
-@cache
-def _unpacked(folder: Traversable) -> Path:
-    """Return a folder of an archive as a real one, kept until the process ends."""
-    import tempfile
-
-    target = Path(tempfile.mkdtemp(prefix=_UNPACKED))
-    atexit.register(shutil.rmtree, target, ignore_errors=True)
-    _unpack(folder, target, count(1))
-    return target
-
-
-def _unpack(folder: Traversable, target: Path, numbers: Iterator[int]) -> None:
-    """Copy a folder.
-
-    Raises:
-        InputError: it has too many files, or an invalid file name.
-    """
-    for item in folder.iterdir():
-        if next(numbers) > _MOST_FILES:
-            raise InputError(f"there are more than {_MOST_FILES} files")
-        name = item.name
-        if not isinstance(name, str) or name in ("", "..") or Path(name).name != name:
-            raise InputError(f"{name!r:.80} is not the name of a file")
-        if item.is_dir():
-            (target / name).mkdir()
-            _unpack(item, target / name, numbers)
-        else:
-            (target / name).write_bytes(item.read_bytes())
 
 
 def _shown(path: Path, spec: str) -> str:

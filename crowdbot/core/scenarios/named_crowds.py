@@ -8,7 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from crowdbot.core.registry.registry import Registry
-from crowdbot.core.scenarios.library import installed, plugin_folders
+from crowdbot.core.scenarios.library import installed
+from crowdbot.core.scenarios.plugin_folders import plugin_folders
 from crowdbot.core.support.text_files import input_bytes
 from crowdbot.dsl.scenario.crowd import Crowd
 from crowdbot.dsl.suite.expand import expand_document, load_document

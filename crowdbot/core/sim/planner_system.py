@@ -6,12 +6,11 @@ Discrete events run after unrestricted ones, so a planner step sees the readings
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from pydrake.systems.framework import (
     Context,
     DiagramBuilder,
@@ -23,9 +22,6 @@ from pydrake.systems.framework import (
 from crowdbot.core.assistance.finder import PersonSight
 from crowdbot.core.assistance.guide import PersonGuide
 from crowdbot.core.assistance.target import lidars_of
-from crowdbot.core.crowd import state as crowd_state
-from crowdbot.core.crowd.response.notice import notice_time
-from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.planning.drawn import Drawn
 from crowdbot.core.planning.host import STOP, HostedCommand, PlannerHost
 from crowdbot.core.planning.planner import (
@@ -42,82 +38,17 @@ from crowdbot.core.sim import ports
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.crowd_system import CrowdSystem
-from crowdbot.core.sim.foresight import Foresight
 from crowdbot.core.sim.other_robots import OtherRobots
 from crowdbot.core.sim.person_targets import guide_of, relative_people
+from crowdbot.core.sim.planner_truth import TruthSource, truth_source
 from crowdbot.core.sim.sensor_bank import SensorBank
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command, Pose
-from crowdbot.core.types.robot import RobotLimits, RobotModel, RobotState
+from crowdbot.core.types.robot import RobotLimits, RobotState
 from crowdbot.core.types.task import Task
 from crowdbot.errors import PlannerError
-
-
-@dataclass(frozen=True, slots=True)
-class People:
-    """All people who may be met, with number and radius, including those not present yet.
-
-    Attributes:
-        notice: (N,) time to contact from which they respond to a robot that moves, s.
-        robots: (R,) how far the other robots reach, m; they stand among the people,
-            numbered -2, -3, ….
-        foresight: predicts them; None: not available.
-    """
-
-    id: NDArray[np.int64]
-    radius: Array
-    notice: Array = field(default_factory=lambda: np.zeros(0))
-    robots: Array = field(default_factory=lambda: np.zeros(0))
-    foresight: Foresight | None = None
-
-    def truth(
-        self, robot: RobotState, crowd: Array, others: Sequence[RobotState | None] = ()
-    ) -> Truth:
-        """Return the ground truth: the robot and all people present.
-
-        Args:
-            crowd: the flat state of the crowd, or empty.
-            others: states of the other robots; None for one that has left.
-        """
-        rows = np.zeros((0, 4))
-        there = np.zeros(len(self.id), dtype=bool)
-        if len(self.id):
-            _, people = crowd_state.view(crowd)
-            there = people[:, crowd_state.WAITING] == crowd_state.PRESENT
-            rows = people[there, crowd_state.X : crowd_state.VY + 1]
-        radius, ids, notice = self.radius[there], self.id[there], self.notice[there]
-        here = [k for k, other in enumerate(others) if other is not None]
-        if here:
-            met = [(o.x, o.y, o.vx, o.vy) for o in others if o is not None]
-            rows = np.concatenate([rows, np.array(met)])
-            radius = np.concatenate([radius, self.robots[here]])
-            ids = np.concatenate([ids, -2 - np.array(here, np.int64)])
-            notice = np.concatenate([notice, np.zeros(len(here))])
-        return Truth(
-            pose=Pose(robot.x, robot.y, robot.yaw),
-            velocity=(robot.vx, robot.vy, robot.w),
-            people=rows[:, :2],
-            people_velocity=rows[:, 2:],
-            people_radius=radius,
-            people_id=ids,
-            people_notice=notice,
-            foresee=self._foresee(crowd, there),
-        )
-
-    def _foresee(
-        self, crowd: Array, there: NDArray[np.bool_]
-    ) -> Callable[[int, float, Array | None], Array] | None:
-        """Return the predictor of the people who are present, starting from a crowd state."""
-        seer = self.foresight
-        if seer is None:
-            return None
-
-        def foresee(steps: int, step: float, path: Array | None = None) -> Array:
-            return seer.places(crowd, steps, step, path)[:, there]
-
-        return foresee
 
 
 class GuideInputs(NamedTuple):
@@ -149,7 +80,7 @@ class PlannerSystem(LeafSystem):
         on_step: Callable[[float, HostedCommand], None],
         on_signal: Callable[[float, str, float], None],
         on_drawing: Callable[[float, Drawn], None],
-        people: People | None = None,
+        people: TruthSource | None = None,
         guided: GuideInputs | None = None,
         crowd_size: int = 0,
         others: OtherRobots,
@@ -343,7 +274,7 @@ def add_planner(
         on_step=lambda t, step: log.command(t, step.command, step.seconds, step.clamped),
         on_signal=log.writer.signal,
         on_drawing=log.drawing,
-        people=_people(crowd, others.models) if privileged else None,
+        people=truth_source(crowd, others.models) if privileged else None,
         guided=guided,
         crowd_size=0 if crowd is None else crowd.state.size(),
         others=others,
@@ -366,12 +297,3 @@ def _guided(built: BuiltRun, seed: int) -> GuideInputs | None:
     if guide is None or built.target is None:
         return None
     return GuideInputs(guide, relative_people(built.target), tuple(lidars_of(built.infos)))
-
-
-def _people(crowd: CrowdSystem | None, others: Sequence[RobotModel]) -> People:
-    reach = np.array([footprint_of_model(model).reach for model in others])
-    if crowd is None:
-        return People(np.zeros(0, np.int64), np.zeros(0), np.zeros(0), reach)
-    agents = crowd.engine.agents
-    notice = notice_time(agents, crowd.engine.world.response)
-    return People(agents.id, agents.radius, notice, reach, crowd.foresight)

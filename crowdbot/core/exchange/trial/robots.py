@@ -14,7 +14,7 @@ from crowdbot.core.exchange.rows import Row, RowTable
 from crowdbot.core.exchange.scene import Data, Draft, free_name, name_of
 from crowdbot.core.exchange.trial.law import Motion, heading, place, read_law
 from crowdbot.core.robots.build import build_model
-from crowdbot.core.scenarios.library import plugin_folders
+from crowdbot.core.scenarios.plugin_folders import plugin_folders
 from crowdbot.dsl.text.diagnostics import Source
 from crowdbot.dsl.text.nodes import parse, to_data
 
