@@ -61,7 +61,7 @@ from crowdbot.core.recording.from_mcap import Trajectories as Trajectories
 from crowdbot.core.recording.recording import Recording as Recording
 from crowdbot.core.recording.recording import RecordingInfo as RecordingInfo
 from crowdbot.core.robots.description import Description as Description
-from crowdbot.core.robots.description import read_description as read_description
+from crowdbot.core.robots.description_file import read_description as read_description
 from crowdbot.core.robots.published import read_published as read_published
 from crowdbot.core.robots.published_conversion import PublishedWheel as PublishedWheel
 from crowdbot.core.scoring.metric import Metric as Metric

@@ -11,7 +11,8 @@ import numpy as np
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.robots.check_drive import beyond_the_drive
 from crowdbot.core.robots.check_links import below_floor, check_masses, impossible_moments
-from crowdbot.core.robots.description import Description, read_description
+from crowdbot.core.robots.description import Description
+from crowdbot.core.robots.description_file import read_description
 from crowdbot.core.robots.joint import Joint
 from crowdbot.core.robots.wheel_gain import reached_speed
 from crowdbot.core.types.arrays import Array

@@ -1,44 +1,26 @@
-"""Read a robot's description, SDFormat or URDF, as far as checks and models need it.
+"""A robot's description, SDFormat or URDF, as far as checks and models need it.
 
 Nothing here needs Drake.
 """
 
 from __future__ import annotations
 
-import re
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from importlib.resources.abc import Traversable
-from pathlib import Path
 from typing import Literal
 from xml.etree import ElementTree as Xml
 
 import numpy as np
 
-from crowdbot.core.robots.convex_piece import is_piece
-from crowdbot.core.robots.joint import KNOWN, Joint, child_of, sdf_joint, urdf_joint
-from crowdbot.core.robots.plain_xacro import is_macro, write_out
-from crowdbot.core.robots.sdf_frames import written_out
-from crowdbot.core.robots.sdf_inertia import write_out_inertias
-from crowdbot.core.robots.sdf_nested import without_nested
-from crowdbot.core.robots.sdf_poses import plain_poses
+from crowdbot.core.robots.joint import Joint, child_of, sdf_joint, urdf_joint
 from crowdbot.core.robots.xml import matrix, name_of, number, numbers, pose_of
-from crowdbot.core.support.text_files import LARGEST
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import DifferentialDrive
-from crowdbot.dsl.text.bounded_files import read_bytes
 from crowdbot.errors import PluginError, did_you_mean, nearest
 
 Format = Literal["sdf", "urdf"]
-_ROUND = ("sphere", "cylinder", "ellipsoid")
-#: Shapes that a link collides as; Drake drops others without an error.
-_SOLID = ("box", "capsule", "empty", *_ROUND)
-_EXPAND = (
-    "expand them into a file: xacro ROBOT.urdf.xacro > ROBOT.urdf, where ROS is installed, or "
-    "after 'pip install xacro'"
-)
+ROUND = ("sphere", "cylinder", "ellipsoid")
 
 
 @dataclass(frozen=True)
@@ -149,7 +131,7 @@ class Description:
             PluginError: there is no such joint, or no sphere or cylinder on it.
         """
         wheel = self.joint(joint).child
-        found = [_radius(shape) for shape in collisions(self.link(wheel)) if shape.tag in _ROUND]
+        found = [_radius(shape) for shape in collisions(self.link(wheel)) if shape.tag in ROUND]
         if not found:
             raise PluginError(
                 f"wheel '{wheel}' has no collision shape that can roll: a sphere or a cylinder"
@@ -209,145 +191,6 @@ class Description:
         if not seen_from or seen_from == "__model__":
             return own
         return self._in_model(seen_from, (*below, link)) @ own
-
-
-def read_description(source: str | Path | Traversable) -> Description:
-    """Read a robot's description from text or from a file.
-
-    Args:
-        source: text that begins with ``<``, or a path: of a file beside the scenario
-            (``spec.body.file`` of an ``Asset``) or one of a package
-            (``importlib.resources.files("my_package") / "robot.urdf"``).
-
-    Raises:
-        PluginError: it cannot be read, is not well-formed, or contains no robot.
-    """
-    text, _ = read_text(source)
-    try:
-        return _checked(parse_description(text))
-    except PluginError as error:
-        if text is source:
-            raise
-        raise PluginError(f"{source}: {error}") from error
-
-
-def read_text(source: str | Path | Traversable) -> tuple[str, Path | None]:
-    """Return the text of a description and its folder; arguments as in `read_description`.
-
-    Raises:
-        PluginError: it cannot be read.
-    """
-    if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
-        return source, None
-    if isinstance(source, str) and not source.strip("\ufeff \t\r\n"):
-        raise PluginError("the robot's description is empty")
-    file = Path(source) if isinstance(source, str) else source
-    try:
-        is_path = isinstance(file, Path)
-        content = read_bytes(Path(str(file)), LARGEST) if is_path else file.read_bytes()
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise PluginError(
-            f"robot description {file} cannot be read: is not UTF-8 text; save it as UTF-8, and "
-            "remove another encoding from its first line"
-        ) from error
-    except OSError as error:
-        raise PluginError(f"robot description {file} cannot be read: {error}") from error
-    return text, file.parent if isinstance(file, Path) else None
-
-
-def parse_description(text: str) -> Description:
-    """Parse a description without checking its contents.
-
-    Raises:
-        PluginError: it is not well-formed, or contains no robot.
-    """
-    try:
-        top = Xml.fromstring(text.lstrip("\ufeff \t\r\n"))
-    except Xml.ParseError as error:
-        hint = f"; its xacro macros: {_EXPAND}" if "xacro:" in text else ""
-        raise PluginError(
-            f"the robot's description is not well-formed XML: {error}{hint}"
-        ) from error
-    notes: tuple[str, ...] = ()
-    if any(is_macro(element) for element in top.iter()):
-        names = write_out(top)
-        if not names:
-            raise PluginError(f"the robot's description has xacro macros; {_EXPAND}")
-        text = Xml.tostring(top, encoding="unicode")
-        notes = (f"{len(names)} of xacro's properties written out: {', '.join(names)}",)
-    if top.tag == "robot":
-        return Description(text, "urdf", top, notes=notes)
-    model = top if top.tag == "model" else _only_model(top)
-    if top.tag not in ("sdf", "model") or model is None:
-        raise PluginError(
-            f"the robot's description is neither URDF (<robot>) nor SDFormat (<sdf><model>): "
-            f"<{top.tag}>"
-        )
-    version = top.get("version", "1.9")
-    plain_poses(model)
-    flat, nested = without_nested(model)
-    made, written = written_out(flat, version)
-    all_notes = (*notes, *nested, *written, *write_out_inertias(made))
-    return Description(text, "sdf", made, version if made is model else "1.9", all_notes)
-
-
-def _only_model(top: Xml.Element) -> Xml.Element | None:
-    """Return the model of a file of SDFormat, also of a world with nothing else.
-
-    Raises:
-        PluginError: a world has several models, or only includes of other files.
-    """
-    found = top.findall("model") or top.findall("world/model")
-    if len(found) > 1:
-        names = ", ".join(f"'{name_of(model)}'" for model in found)
-        raise PluginError(f"the file has {len(found)} models, not one robot: {names}")
-    if not found and (uri := top.findtext("world/include/uri")) is not None:
-        raise PluginError(f"the world includes its model, '{uri.strip()}'; name that model's file")
-    return found[0] if found else None
-
-
-def _checked(described: Description) -> Description:
-    if not described.links:
-        raise PluginError("the robot's description has no link")
-    if not name_of(described.model):
-        tag = described.model.tag
-        raise PluginError(f'the robot\'s description has no name: write <{tag} name="…">')
-    for part in ("link", "joint"):
-        names = Counter(name_of(element) for element in described.model.findall(part))
-        if twice := [name for name, count in names.items() if count > 1]:
-            raise PluginError(f"the robot's description has two {part}s named '{twice[0]}'")
-    for joint in described.joints.values():
-        if joint.kind not in KNOWN:
-            raise PluginError(
-                f"joint '{joint.name}' is {joint.kind}; the joints of a mobile base are "
-                f"{', '.join(KNOWN)}"
-            )
-        described.link(joint.parent)
-        described.link(joint.child)
-    _check_limits(described)
-    for name, link in described.links.items():
-        if len(link.findall("inertial")) > 1:
-            raise PluginError(f"link '{name}' has several <inertial>; add them up to one")
-        for shape in collisions(link):
-            kind = re.split("[:}]", shape.tag)[-1]  # without the prefix of Drake's own shapes
-            if kind in _SOLID or is_piece(shape):
-                continue
-            way = ", or read the file with read_published" if kind == "mesh" else ""
-            raise PluginError(
-                f"link '{name}' collides as a {kind}; use box, cylinder, sphere or capsule{way}"
-            )
-    return described
-
-
-def _check_limits(described: Description) -> None:
-    for element in described.model.findall("joint"):
-        limit = element.find("limit")
-        if limit is not None and limit.get("velocity", "").strip().startswith("-"):
-            raise PluginError(
-                f"joint '{name_of(element)}' has the velocity limit {limit.get('velocity')}; "
-                "leave it out if there is none"
-            )
 
 
 def _unknown(part: str, name: str, known: Mapping[str, object]) -> str:

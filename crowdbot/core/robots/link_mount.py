@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.robots.description import read_description
+from crowdbot.core.robots.description_file import read_description
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import RobotModel
 from crowdbot.dsl.spec.component_specs import SensorSpec

@@ -13,7 +13,8 @@ from xml.etree import ElementTree as Xml
 import numpy as np
 import shapely  # type: ignore[import-untyped,unused-ignore]
 
-from crowdbot.core.robots.description import Description, read_description
+from crowdbot.core.robots.description import Description
+from crowdbot.core.robots.description_file import read_description
 from crowdbot.core.robots.xml import matrix, numbers, pose_of
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.robot import RobotModel

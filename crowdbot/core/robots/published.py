@@ -14,12 +14,8 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from xml.etree import ElementTree as Xml
 
-from crowdbot.core.robots.description import (
-    Description,
-    parse_description,
-    read_description,
-    read_text,
-)
+from crowdbot.core.robots.description import Description
+from crowdbot.core.robots.description_file import parse_description, read_description, read_text
 from crowdbot.core.robots.held_joints import hold_at
 from crowdbot.core.robots.mesh_pieces import MeshShape
 from crowdbot.core.robots.published_conversion import ANCHOR, Conversion, PublishedWheel

@@ -16,7 +16,8 @@ import numpy as np
 from crowdbot.core.geometry.optical_frame import OPTICAL_RPY, optical
 from crowdbot.core.recording.scenery import FRAMES
 from crowdbot.core.robots.convex_piece import corners_of, is_piece
-from crowdbot.core.robots.description import Description, read_description
+from crowdbot.core.robots.description import Description
+from crowdbot.core.robots.description_file import read_description
 from crowdbot.core.robots.sdf_to_urdf import from_sdf, write_origin
 from crowdbot.core.robots.xml import matrix, pose_of, six
 from crowdbot.core.types.robot import DifferentialDrive, RobotModel

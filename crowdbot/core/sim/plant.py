@@ -24,7 +24,8 @@ from pydrake.multibody.tree import (
 )
 from pydrake.systems.framework import DiagramBuilder
 
-from crowdbot.core.robots.description import Description, read_description
+from crowdbot.core.robots.description import Description
+from crowdbot.core.robots.description_file import read_description
 from crowdbot.core.robots.simplify import simplified
 from crowdbot.core.sim.drake_failures import drake_failures
 from crowdbot.core.support.ticks import TICK

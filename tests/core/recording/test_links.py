@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.recording.header import RecordingHeader, RobotHeader, with_frames
 from crowdbot.core.recording.scenery import static_frames
-from crowdbot.core.robots.description import read_description
+from crowdbot.core.robots.description_file import read_description
 from crowdbot.core.types.robot import RobotLimits
 from crowdbot.core.types.sensor import SensorInfo
 

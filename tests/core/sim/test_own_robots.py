@@ -16,7 +16,7 @@ from crowdbot.core.crowd import state as s
 from crowdbot.core.environments.build import build_environment
 from crowdbot.core.planning.host import PlannerHost
 from crowdbot.core.robots.check import check_model
-from crowdbot.core.robots.description import read_description
+from crowdbot.core.robots.description_file import read_description
 from crowdbot.core.robots.task import robot_task
 from crowdbot.core.robots.urdf_export import to_urdf
 from crowdbot.core.sensing.build import build_sensor

@@ -10,7 +10,7 @@ import pytest
 
 from crowdbot.core.registry.registry import discover
 from crowdbot.core.robots.build import build_model, build_robot
-from crowdbot.core.robots.description import read_description
+from crowdbot.core.robots.description_file import read_description
 from crowdbot.core.robots.task import sensor_infos
 from crowdbot.core.scenarios.library import open_spec
 from crowdbot.core.types.robot import RobotModel
