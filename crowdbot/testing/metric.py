@@ -6,25 +6,27 @@ Worlds are random, but the same in each test run.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 import crowdbot.testing.degenerate as degenerate
-from crowdbot.core.trajectories.commands import Commands
-from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.score import Score
 from crowdbot.dsl.spec.component import Component
 from crowdbot.dsl.spec.component_specs import MetricSpec
+from crowdbot.testing.changed_worlds import (
+    each_run,
+    perturbed,
+    perturbed_threshold,
+    perturbed_world,
+    symmetric,
+    symmetric_world,
+)
 from crowdbot.testing.scored import Scored, invariants_of, metric_of, scores_of, with_signals
 from crowdbot.testing.symmetries import (
-    COMMAND_SYMMETRIES,
     RUN_SYMMETRIES,
     arrays_of,
-    perturb,
     scale_masses,
     with_people,
     without_velocities,
@@ -101,7 +103,7 @@ def check_symmetries(component: Component[Any]) -> None:
         found = scores_of(component, world)
         for name in RUN_SYMMETRIES:
             plain = world is random_world(seed)
-            changed = _symmetric_world(seed, name) if plain else _symmetric(world, name)
+            changed = symmetric_world(seed, name) if plain else symmetric(world, name)
             _assert_same(component, found, scores_of(component, changed), name)
 
 
@@ -161,7 +163,7 @@ def check_masses(component: Component[Any]) -> None:
     for seed in _SEEDS:
         world = with_signals(component, random_world(seed))
         light = scores_of(component, world)
-        heavy = scores_of(component, _each_run(world, lambda run: scale_masses(run, 4.0)))
+        heavy = scores_of(component, each_run(world, lambda run: scale_masses(run, 4.0)))
         for variant, one in light.items():
             assert one.status == heavy[variant].status, variant
             if one.value is not None:
@@ -189,7 +191,7 @@ def check_velocities_left_out(component: Component[Any]) -> None:
     """
     for seed in range(4):
         world = with_signals(component, straight_world(seed, 32.0))
-        silent = _each_run(world, without_velocities)
+        silent = each_run(world, without_velocities)
         found = scores_of(component, world)
         _assert_same(component, found, scores_of(component, silent), "velocities")
 
@@ -202,50 +204,13 @@ def check_rounding(component: Component[Any]) -> None:
     for seed in _SEEDS:
         world = with_signals(component, random_world(seed))
         plain = world is random_world(seed)
-        _assert_robust(component, world, _perturbed_world(seed) if plain else _off(world, seed))
+        _assert_robust(component, world, perturbed_world(seed) if plain else perturbed(world, seed))
     for name, world in degenerate.on_thresholds().items():
         for seed in range(3):
             try:
-                _assert_robust(component, world, _perturbed_threshold(name, seed))
+                _assert_robust(component, world, perturbed_threshold(name, seed))
             except AssertionError as error:
                 raise AssertionError(f"{name}: {error}") from error
-
-
-# ------------------------------------------------------------------------- details
-def _symmetric(world: World, name: str) -> World:
-    changed = _each_run(world, RUN_SYMMETRIES[name])
-    return _each_command(changed, COMMAND_SYMMETRIES.get(name))
-
-
-@lru_cache(maxsize=256)
-def _symmetric_world(seed: int, name: str) -> World:
-    """Return a world used with almost all metrics."""
-    return _symmetric(random_world(seed), name)
-
-
-def _each_run(world: World, change: Callable[[Trajectories], Trajectories]) -> World:
-    def changed(run: Trajectories | None) -> Trajectories | None:
-        return None if run is None else change(run)
-
-    return replace(
-        world,
-        run=change(world.run),
-        robot_alone=changed(world.robot_alone),
-        crowd_alone=changed(world.crowd_alone),
-    )
-
-
-def _each_command(world: World, change: Callable[[Commands], Commands] | None) -> World:
-    def changed(commands: Commands | None) -> Commands | None:
-        return None if commands is None or change is None else change(commands)
-
-    if change is None:
-        return world
-    return replace(
-        world,
-        commands=changed(world.commands),
-        commands_baseline=changed(world.commands_baseline),
-    )
 
 
 # --------------------------------------------------------------------- assertions
@@ -323,20 +288,6 @@ def _assert_ordered(variant: str, monotony: str, fewer: Score, more: Score) -> N
     assert up >= -1e-9 * max(1.0, abs(more.value)), (
         f"{variant}: {fewer.value} became {more.value} with one person more"
     )
-
-
-def _off(world: World, seed: int) -> World:
-    return _each_run(world, lambda run: perturb(run, 1e-12, seed))
-
-
-@lru_cache(maxsize=64)
-def _perturbed_world(seed: int) -> World:
-    return _off(random_world(seed), seed)
-
-
-@lru_cache(maxsize=64)
-def _perturbed_threshold(name: str, seed: int) -> World:
-    return _off(degenerate.on_thresholds()[name], seed)
 
 
 def _assert_robust(component: Component[Any], world: World, changed: World) -> None:
