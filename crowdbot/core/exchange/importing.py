@@ -103,7 +103,7 @@ _NOT_READ = (
 )
 _TRACKS = (
     "recorded people are a table whose header names t (or frame), id, x and y, TrajNet++ "
-    "(.ndjson), or rows of ETH, UCY, PeTrack or JuPedSim (.txt, .vsp)"
+    "(.ndjson), or rows of ETH, UCY, PeTrack or JuPedSim (.txt, .vsp, .sqlite)"
 )
 #: A tag of files other than scenes, or their ending; what reads them, or what to do.
 _ELSEWHERE = (
@@ -125,6 +125,7 @@ _ELSEWHERE = (
     *((tag, f"Menge's XML {_NOT_READ}") for tag in ("Experiment", "Project", "BFSM")),
     *((tag, f"XML of JuPedSim before 1.0 {_NOT_READ}")
       for tag in ("geometry", "JuPedSim", "routing")),
+    ("floor", f"crowd:it's XML {_NOT_READ}"),
     *((tag, f"SUMO's XML {_NOT_READ}") for tag in ("routes", "net", "additional")),
     *((ending, _TRACKS) for ending in (".txt", ".tsv", ".csv")),
 )  # fmt: skip

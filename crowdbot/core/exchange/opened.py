@@ -10,6 +10,8 @@ from crowdbot.core.exchange.item import Item
 from crowdbot.core.exchange.report import Report
 from crowdbot.core.exchange.source import source_of
 from crowdbot.core.exchange.xml_items import parse_xml
+from crowdbot.core.trajectories.data_sets.jupedsim_output import ENDINGS as DATABASES
+from crowdbot.core.trajectories.data_sets.jupedsim_output import is_database
 from crowdbot.dsl.text.diagnostics import Diagnostic, Mark, Source
 from crowdbot.errors import SpecError
 
@@ -58,6 +60,8 @@ def open_file_of_others(path: Path, report: Report) -> OpenedScene:
     Raises:
         SpecError: E401, it cannot be read or parsed.
     """
+    if path.suffix.lower() in DATABASES and is_database(path):
+        return OpenedScene(path, Source(str(path), [""], file=path), "", "text")
     source, text = source_of(path)
     start, ending = text.lstrip()[:1], path.suffix.lower()
     if start == "<" or ending in _XML:

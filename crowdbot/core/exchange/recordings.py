@@ -25,8 +25,11 @@ from crowdbot.errors import SpecError
 
 #: Columns that follow from the places.
 _FOLLOWING = {"yaw", "heading", "theta", "angle", "orientation", "vx", "vy", "vel_x", "vel_y",
-              "velocity_x", "velocity_y", "speed"}  # fmt: skip
-_HEIGHT = {"z": "people walk on one floor"}
+              "velocity_x", "velocity_y", "speed", "ori_x", "ori_y"}  # fmt: skip
+_NOTES = {
+    "z": "people walk on one floor",
+    "geometry": "give the floor with environment.kind: floor_plan and its WKT",
+}
 #: First columns of a file without a header: UMANS' time and place of one agent.
 _BARE = ("t", "x", "y")
 #: Later first times are those of a clock, not of a run, s.
@@ -137,7 +140,7 @@ def _record_unused(file: OpenedScene, whole: Item, table: RawTable, report: Repo
             mark = Mark(file.source, top, column, max(1, len(name)))
             item = whole.add(Item(name or "column without a name", mark))
             notes = dict.fromkeys(_FOLLOWING, RECORDING.rows[1].note)
-            report.left_out(item, (notes | _HEIGHT).get(known, UNKNOWN))
+            report.left_out(item, (notes | _NOTES).get(known, UNKNOWN))
         column += len(name)
 
 

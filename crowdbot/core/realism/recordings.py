@@ -23,7 +23,8 @@ _BAGS = (".bag", ".db3")
 _HEAD, _LONGEST = 8 + 1 + 8, 1000
 _FORMATS = (
     "a recording (.mcap), a table t,id,x,y (.csv, .tsv), a bag of ROS (.bag, .db3, .mcap, or a "
-    "folder with metadata.yaml), TrajNet++ (.ndjson), or ETH and UCY (.txt, .vsp)"
+    "folder with metadata.yaml), TrajNet++ (.ndjson), ETH and UCY (.txt, .vsp), or JuPedSim (.txt, "
+    ".sqlite)"
 )
 
 

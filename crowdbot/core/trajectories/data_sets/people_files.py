@@ -10,6 +10,7 @@ from typing import Literal
 
 from crowdbot.core.support.text_files import LARGEST_TABLE, input_text
 from crowdbot.core.trajectories.data_sets.homography import AS_STATED, VideoScale, in_metres
+from crowdbot.core.trajectories.data_sets.jupedsim_output import ENDINGS as DATABASES
 from crowdbot.core.trajectories.data_sets.readers import WIDTHS, eth_ucy_table, trajnet_table
 from crowdbot.core.trajectories.data_sets.splines import is_spline_file
 from crowdbot.core.trajectories.own_recordings import AGENT, columns_of
@@ -25,7 +26,7 @@ from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.errors import InputError, RecordingWarning
 
 #: Endings of such files.
-ENDINGS = (".csv", ".tsv", ".ndjson", ".txt", ".vsp")
+ENDINGS = (".csv", ".tsv", ".ndjson", ".txt", ".vsp", *DATABASES)
 _FOR_COLUMNS = ("agent_radius", "agent_mass", "resample", "clock_offset", "max_gap")
 
 
@@ -34,7 +35,7 @@ def people_table(path: Path, scale: VideoScale = AS_STATED) -> RawTable:
 
     Args:
         path: a table t,id,x,y with a header (or a comment) that names its columns; TrajNet++
-            (``.ndjson``); ETH, UCY, PeTrack or JuPedSim (``.txt``, ``.vsp``).
+            (``.ndjson``); ETH, UCY, PeTrack or JuPedSim (``.txt``, ``.vsp``, ``.sqlite``).
         scale: of positions and numbers of frames; what the file states holds otherwise.
 
     Returns:
@@ -70,7 +71,7 @@ def people_run(table: RawTable, notes: Sequence[str]) -> Trajectories:
 
 def holds_people(path: Path, text: str) -> bool:
     """Return True for the text of such a file: its columns are named, or it is a data set's."""
-    if path.suffix.lower() in (".ndjson", ".vsp"):
+    if path.suffix.lower() in (".ndjson", ".vsp", *DATABASES):
         return True
     try:
         table = split(path, _head(text))
@@ -104,7 +105,9 @@ def _form(path: Path) -> Literal["table", "data set", "trajnet"]:
         named = _named(path, split(path, _head(text)))
         timed = named.get("t", FRAMES[0]) not in FRAMES
         return "table" if timed and {"id", "x", "y"} <= set(named) else "data set"
-    return "trajnet" if ending == ".ndjson" else "data set" if ending == ".vsp" else "table"
+    if ending == ".ndjson":
+        return "trajnet"
+    return "data set" if ending in (".vsp", *DATABASES) else "table"
 
 
 def _named(path: Path, table: TextTable) -> dict[str, str]:

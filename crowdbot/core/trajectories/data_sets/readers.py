@@ -11,7 +11,13 @@ import numpy as np
 
 import crowdbot.core.trajectories.plausibility.exchanged as exchanged
 from crowdbot.core.support.text_files import LARGEST_TABLE, input_text
-from crowdbot.core.trajectories.data_sets.homography import Homography, matrix_of, projected
+from crowdbot.core.trajectories.data_sets.homography import (
+    Homography,
+    in_metres,
+    matrix_of,
+    projected,
+)
+from crowdbot.core.trajectories.data_sets.jupedsim_output import is_database, jupedsim_table
 from crowdbot.core.trajectories.data_sets.splines import is_spline_file, spline_table
 from crowdbot.core.trajectories.plausibility.times import CREEPING
 from crowdbot.core.trajectories.raw_table import RawTable
@@ -84,7 +90,7 @@ def eth_ucy_table(
     """Read people from ETH or UCY: splines, ``obsmat.txt`` (8 columns), or 4: frame, id, x, y.
 
     A comment such as ``# id frame x/m y/m z/m``, as in files of PeTrack and JuPedSim, names the
-    columns otherwise.
+    columns otherwise. A database of JuPedSim is read, too.
 
     Args:
         path: the file; blanks, tabs or commas between the columns, no header.
@@ -99,10 +105,14 @@ def eth_ucy_table(
     Raises:
         InputError: it cannot be read, or a row is invalid.
     """
+    if is_database(path):
+        return in_metres(jupedsim_table(path, frame_rate), homography), []
     text = input_text(path, LARGEST_TABLE)
     if is_spline_file(path, text):
         return spline_table(path, homography, frame_rate)
     found = split(path, text)
+    if not found.rows:
+        raise InputError(f"{path}: the table has no rows")
     width = len(found.rows[0])
     names = [_OURS.get(without_unit(name).lower(), "") for name in found.header]
     assumed = found.assumed

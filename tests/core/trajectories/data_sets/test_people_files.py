@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+import sqlite3
 import warnings
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -144,3 +146,49 @@ def test_the_frame_of_a_camera_is_told(tmp_path: Path) -> None:
             warnings.simplefilter("always")
             Trajectories.from_csv(tmp_path / "a.txt", robot_radius=0.2, robot_mass=5.0)
         assert any("the frame of a camera" in str(w.message) for w in caught) == seen
+
+
+def _database(file: Path, fps: str | None = "10.0") -> None:
+    """Write what JuPedSim writes: two people walk along x at 1 m/s, from frame 5 on."""
+    with closing(sqlite3.connect(file)) as base:
+        base.executescript(
+            "CREATE TABLE metadata(key TEXT PRIMARY KEY, value TEXT NOT NULL);"
+            "CREATE TABLE trajectory_data (frame INTEGER NOT NULL, id INTEGER NOT NULL,"
+            "pos_x REAL NOT NULL, pos_y REAL NOT NULL, ori_x REAL NOT NULL, ori_y REAL NOT NULL);"
+        )
+        if fps is not None:
+            base.execute("INSERT INTO metadata VALUES ('fps', ?)", [fps])
+        rows = [(5 + k, i, 0.1 * k, i) for k in range(20) for i in (1, 2)]
+        base.executemany("INSERT INTO trajectory_data VALUES (?, ?, ?, ?, 1, 0)", rows)
+        base.commit()
+
+
+def test_a_database_of_jupedsim(tmp_path: Path) -> None:
+    file = tmp_path / "a.sqlite"
+    _database(file)
+    rows = _import(file)
+    assert rows.shape == (40, 4)
+    np.testing.assert_allclose(rows[-1], [1.9, 2.0, 1.9, 2.0])
+    with pytest.warns(RecordingWarning, match="ori_x, ori_y are not used"):
+        run = Trajectories.from_eth_ucy(file, frame_rate=5.0)
+    assert run.t[-1] == pytest.approx(3.8)
+
+
+@pytest.mark.parametrize("fps", [None, "0", "many"])
+def test_a_database_without_frame_rate(tmp_path: Path, fps: str | None) -> None:
+    _database(tmp_path / "a.sqlite", fps)
+    with pytest.raises(InputError, match=r"a\.sqlite: its metadata does not say .* \(fps\)"):
+        people_table(tmp_path / "a.sqlite")
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"SQLite format 3\0xxxx", r"a\.sqlite: is not a database of JuPedSim's people"),
+        (b"frame id x y\n", r"a\.sqlite: the table has no rows"),
+    ],
+)
+def test_damaged_databases(tmp_path: Path, content: bytes, message: str) -> None:
+    (tmp_path / "a.sqlite").write_bytes(content)
+    with pytest.raises(InputError, match=message):
+        people_table(tmp_path / "a.sqlite")
