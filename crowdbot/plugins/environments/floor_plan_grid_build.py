@@ -17,7 +17,7 @@ from crowdbot.plugins.environments.floor_plan_units_build import moved
 from crowdbot.plugins.environments.grid_lines_build import MOST_TOLERANCE, straightened
 from crowdbot.plugins.environments.grid_rings_build import grid_rings
 from crowdbot.plugins.environments.map_image_build import read_grey
-from crowdbot.plugins.environments.ros_map_build import RosMap, free_cells, read_map
+from crowdbot.plugins.environments.ros_map_build import RosMap, free_cells, read_map, tell_units
 
 
 def read_grid(spec: FloorPlanFields, file: Path, image: Path | None) -> list[Any]:
@@ -50,6 +50,7 @@ def cells_of(
         InputError: as in `read_grid`.
     """
     found = read_map(file)
+    tell_units(file.name, found)
     grey = read_grey(image or found.image_beside(file), found.alpha)
     return found, free_cells(found, grey, unknown_is_free=spec.unknown == "free")
 

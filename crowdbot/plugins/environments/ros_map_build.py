@@ -78,7 +78,7 @@ class RosMap:
         return grey if self.negate else 1.0 - grey
 
 
-def _tell_units(name: str, ros_map: RosMap) -> None:
+def tell_units(name: str, ros_map: RosMap) -> None:
     """Warn of a yaw that is hardly in radians, and of cells that are hardly in metres."""
     if abs(ros_map.origin[2]) > 2.0 * np.pi:
         _LOG.warning("%s: yaw is %g rad: degrees?", name, ros_map.origin[2])
@@ -122,7 +122,6 @@ def read_map(file: Path) -> RosMap:
         raise InputError(f"{file.name}: resolution must be above 0, and all numbers finite")
     if not 0.0 <= ros_map.free <= ros_map.occupied <= 1.0:
         raise InputError(f"{file.name}: thresholds must be 0 <= free <= occupied <= 1")
-    _tell_units(file.name, ros_map)
     if ros_map.mode not in _MODES:
         known, near = ", ".join(_MODES), did_you_mean(nearest(ros_map.mode, _MODES))
         raise InputError(f"{file.name}: mode '{ros_map.mode}' is not one of {known}{near}")
