@@ -48,7 +48,7 @@ class CheckedObserver:
     """An observer whose results are checked.
 
     Attributes:
-        low, high: as of `Observer`.
+        low, high: as in `Observer`.
     """
 
     def __init__(self, observer: Observer, worlds: int, call: PluginCall) -> None:

@@ -80,7 +80,7 @@ class ReferenceScores:
 
     Attributes:
         commands: those that made it, the first one first.
-        results: its runs and scores, as of a folder of runs.
+        results: its runs and scores, like those of a folder of runs.
     """
 
     commands: tuple[str, ...]

@@ -161,7 +161,7 @@ class Session:
         """Begin the run of the only robot, as `reset_all`; its observation at t = 0.
 
         Raises:
-            InputError: there are several robots, or as of `reset_all`.
+            InputError: there are several robots, or as in `reset_all`.
         """
         robot = self._only("reset")
         return self.reset_all(seed)[robot]

@@ -41,7 +41,7 @@ class Rows(Protocol[T]):
 
     @property
     def shape(self) -> tuple[int]:
-        """Return the number of records, as of an array with one dimension."""
+        """Return the number of records, like that of an array with one dimension."""
 
     @overload
     def __getitem__(self, row: int) -> T: ...

@@ -32,7 +32,7 @@ class FreeVelocitiesSpec(ObservationSpec):
     on the way, divided by ``room``; 1 is free. Then follow the gap to what is nearest in each
     sector, divided by ``range``, from behind counter-clockwise; of the nearest people 1 (0 for no
     one, and then all are 0), x and y in the robot's frame divided by ``range``, and their velocity
-    in that frame divided by ``fastest``; and goal and motion as of ``lidar_stack``. People are
+    in that frame divided by ``fastest``; and goal and motion as in ``lidar_stack``. People are
     those whom the people tracker follows in the lidars; in a batch of worlds, where there is no
     tracker, those who are within ``range``. So the policy is not privileged.
     """

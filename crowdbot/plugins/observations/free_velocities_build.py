@@ -101,7 +101,7 @@ def _write(
 
     Args:
         points: (W, B, 2) ends of beams in the robot's frame, m.
-        people, pose: as of `RobotInputs`.
+        people, pose: as in `RobotInputs`.
         velocities: (V, 2) in the robot's frame, m/s.
         p: horizon, room, range, fastest, radius of people.
         radius: of the robot, m.

@@ -45,7 +45,7 @@ def _write_tracks(
     """Write the rows of the nearest people to ``found``; the rest of it is unchanged.
 
     Args:
-        people, pose: as of `RobotInputs`.
+        people, pose: as in `RobotInputs`.
         cos, sin: (W,) of the headings.
         most, fastest: range, m, and speed that is shown as 1, m/s.
         away, which: (K,) scratch.

@@ -23,7 +23,7 @@ from crowdbot.plugins.planners.shared.value_search_build import OF_PAIR
 
 
 class CadrlNetwork:
-    """Values of joint states; arguments and errors as of `SarlNetwork`."""
+    """Values of joint states; arguments and errors as in `SarlNetwork`."""
 
     def __init__(self, weights: Mapping[str, Array], where: str) -> None:
         check_names(weights, ("value_network",), where)

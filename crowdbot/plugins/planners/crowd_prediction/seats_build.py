@@ -106,7 +106,7 @@ def settle(
     """Write the wanted velocities (N, 2): what was wanted before moves towards the present, m/s.
 
     Args:
-        numbers, people: (N,), (N, 5) as of `CrowdForecast.predict`.
+        numbers, people: (N,), (N, 5) as in `CrowdForecast.predict`.
         before, desired: (M,), (M, 2) numbers of people and what they wanted.
         fresh: share of the present, 0 to 1.
     """

@@ -154,7 +154,7 @@ def _contact(
     """Return the weight of a hit at kept sample m, 0 without, and the closeness until then.
 
     Args:
-        around, p, samples, i, need: as of `_cost`.
+        around, p, samples, i, need: as in `_cost`.
         m: number of the sample, among those that are kept.
         close: sum of closeness until the sample before.
     """
@@ -274,7 +274,7 @@ def _price(
         p: parameters.
         state: of the robot.
         samples: the arrays, lanes moved.
-        part: number of the first rollout, as of ``samples.costs``; number of rollouts.
+        part: number of the first rollout, as in ``samples.costs``; number of rollouts.
         need: clearances to walls and to people, m; the least cost before.
     """
     gx, gy, least = around.goal[0] - state[0], around.goal[1] - state[1], need[2]

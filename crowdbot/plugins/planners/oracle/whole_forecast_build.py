@@ -22,7 +22,7 @@ _FAR = 20.0
 
 
 class WholeForecast(CrowdForecast):
-    """Predicts all people of one run, for the whole of a plan; arguments as of `CrowdForecast`."""
+    """Predicts all people of one run, for the whole of a plan; arguments as in `CrowdForecast`."""
 
     def _mean_errors(
         self, numbers: Indices, people: Array, due: CheckedPrediction

@@ -118,7 +118,7 @@ def _target(
     """Return the velocity v, w, vy that a plan wants at time t, slow enough to stop at the goal.
 
     Args:
-        p, first, aside, pace: as of `roll`.
+        p, first, aside, pace: as in `roll`.
         off: direction of the goal from the heading, rad.
         away: distance to the goal, m.
         t: since the plan began, s.
@@ -143,7 +143,7 @@ def _hurries(
     """Return True if the robot would reach a person who stood still within the headway.
 
     Args:
-        world, p: as of `roll`.
+        world, p: as in `roll`.
         gap: to the nearest person, m.
         pose: x, y, yaw of the robot.
         going: its velocity, m/s.

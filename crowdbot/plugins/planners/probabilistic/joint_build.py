@@ -57,7 +57,7 @@ def _nearest(discs: Array, x: float, y: float, radius: float, far: float) -> tup
     """Return the gap of robot and body, at most ``far``, and how far the robot moved there; m.
 
     Args:
-        discs: (K, 4) as of `_placed`.
+        discs: (K, 4) as in `_placed`.
         x, y, radius: of the body, m.
         far: m.
     """
@@ -87,7 +87,7 @@ def _passing(body: Array, discs: Array, aside: tuple[float, float], p: Array) ->
 
     Args:
         body: (5,) x, y, vx, vy, radius.
-        discs: (T, K, 4) as of `_placed`.
+        discs: (T, K, 4) as in `_placed`.
         aside: by how much the person goes otherwise than now, m/s.
         p: parameters.
     """
