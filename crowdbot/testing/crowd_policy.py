@@ -51,15 +51,13 @@ def check_input_is_not_changed(component: Component[Any], registry: Registry | N
 
     If this fails, copy before you change an array: all agents share the view.
     """
-    for make in _factories(component, registry):
-        for seed in crowd_views.SEEDS:
-            view = crowd_views.random_view(seed)
-            before = crowd_views.arrays_of(view)
-            _answer(make(view.agents), view)
-            changed = [
-                name for name, data in crowd_views.arrays_of(view).items() if before[name] != data
-            ]
-            assert not changed, f"changed {', '.join(changed)}"
+    for make, view in _in_crowds(component, registry):
+        before = crowd_views.arrays_of(view)
+        _answer(make(view.agents), view)
+        changed = [
+            name for name, data in crowd_views.arrays_of(view).items() if before[name] != data
+        ]
+        assert not changed, f"changed {', '.join(changed)}"
 
 
 def check_same_view_twice(component: Component[Any], registry: Registry | None = None) -> None:
@@ -99,11 +97,9 @@ def check_translation_invariant(
     If this fails, an absolute coordinate is used. A policy that depends on places declares
     ``Component(exceptions={"check_translation_invariant": "why"})``.
     """
-    for make in _factories(component, registry):
-        for seed in crowd_views.SEEDS:
-            view = crowd_views.random_view(seed)
-            there = crowd_views.moved(view, np.array([16.0, -8.0]))
-            _assert_same(_will(make, view), _will(make, there), "16 m along x, -8 m along y")
+    for make, view in _in_crowds(component, registry):
+        there = crowd_views.moved(view, np.array([16.0, -8.0]))
+        _assert_same(_will(make, view), _will(make, there), "16 m along x, -8 m along y")
 
 
 def check_rotation_equivariant(component: Component[Any], registry: Registry | None = None) -> None:
@@ -112,13 +108,9 @@ def check_rotation_equivariant(component: Component[Any], registry: Registry | N
     If this fails, the axes are treated differently. A policy that depends on directions declares
     ``Component(exceptions={"check_rotation_equivariant": "why"})``.
     """
-    for make in _factories(component, registry):
-        for seed in crowd_views.SEEDS:
-            view = crowd_views.random_view(seed)
-            found = _will(make, crowd_views.turned(view, _TURN))
-            _assert_same(
-                crowd_views.turn(_will(make, view), _TURN), found, f"turned by {_TURN} rad"
-            )
+    for make, view in _in_crowds(component, registry):
+        found = _will(make, crowd_views.turned(view, _TURN))
+        _assert_same(crowd_views.turn(_will(make, view), _TURN), found, f"turned by {_TURN} rad")
 
 
 def check_time_step_is_no_unit(component: Component[Any], registry: Registry | None = None) -> None:
@@ -136,6 +128,14 @@ def check_time_step_is_no_unit(component: Component[Any], registry: Registry | N
             f"with decisions twice as often people are {apart.max():.2f} m elsewhere after "
             f"{way.max():.2f} m"
         )
+
+
+def _in_crowds(
+    component: Component[Any], registry: Registry | None
+) -> Iterator[tuple[Factory, CrowdView]]:
+    """Yield each factory with random crowds."""
+    for make in _factories(component, registry):
+        yield from ((make, crowd_views.random_view(seed)) for seed in crowd_views.SEEDS)
 
 
 def _factories(component: Component[Any], registry: Registry | None) -> Iterator[Factory]:

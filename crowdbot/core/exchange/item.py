@@ -89,6 +89,11 @@ class Item:
             child.used = True
         return found
 
+    def entries(self, name: str) -> list[Item]:
+        """Return the children of the first child of a name, if there is one, counted as used."""
+        listed = self.find(name)
+        return listed.every() if listed else []
+
     def elements(self) -> list[Item]:
         """Return all children but attributes, and count them as used."""
         found = [child for child in self.children if not child.name.startswith("@")]

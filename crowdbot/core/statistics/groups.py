@@ -19,7 +19,7 @@ from crowdbot.core.statistics.clusters import Floats
 from crowdbot.core.statistics.estimate import Counts, Estimate
 from crowdbot.core.statistics.summary import bounds_of_mean, headline_names
 from crowdbot.core.statistics.summary_estimator import mean_of_rows
-from crowdbot.core.statistics.table import MISSING, OK, Key, Name, Table, counts_of
+from crowdbot.core.statistics.table import MISSING, OK, Name, Table, counts_of, key_of
 from crowdbot.core.types.ending import has_failed
 from crowdbot.errors import InputError, UnknownNameError, did_you_mean, nearest
 
@@ -129,17 +129,13 @@ def _groups(table: Table, results: Results, by: Sequence[str]) -> Mapping[_Group
     for one in _tried(table, results):
         group = groups.setdefault(tuple(_label(one, name) for name in by), {})
         rows = group.setdefault(one.planner, np.zeros(len(places), np.bool_))
-        rows[places[_key(one)]] = True
+        rows[places[key_of(one)]] = True
     return groups
-
-
-def _key(one: RunRow | Failure) -> Key:
-    return one.suite, one.scenario, one.seed
 
 
 def _tried(table: Table, results: Results) -> list[RunRow | Failure]:
     """Return the runs, and failed attempts that no later run replaced."""
-    lost = [f for f in results.failures if (f.planner, _key(f)) in table.failures]
+    lost = [f for f in results.failures if (f.planner, key_of(f)) in table.failures]
     return [*results.runs, *lost]
 
 

@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.results.failure import Failure
 from crowdbot.core.results.results import Results
 from crowdbot.core.results.rows import WITHOUT_RUN, RunRow, ScoreRow
 from crowdbot.core.results.score_columns import ColumnState, IndexByValue, ScoreColumns, different
@@ -71,7 +72,7 @@ class Table:
     """
 
     def __init__(self, results: Results) -> None:
-        self.runs = {(r.planner, _key(r)): r for r in results.runs}
+        self.runs = {(r.planner, key_of(r)): r for r in results.runs}
         made = {(f.planner, (f.suite, f.scenario, f.seed)): f.error for f in results.failures}
         self.failures = {place: why for place, why in made.items() if place not in self.runs}
         places = [*self.runs, *self.failures]
@@ -308,7 +309,8 @@ def counts_of(outcome: NDArray[np.int8]) -> Counts:
     return Counts(**dict(zip(OUTCOMES, map(int, found), strict=True)))
 
 
-def _key(run: RunRow) -> Key:
+def key_of(run: RunRow | Failure) -> Key:
+    """Return what runs of several planners share: suite, scenario and seed."""
     return run.suite, run.scenario, run.seed
 
 

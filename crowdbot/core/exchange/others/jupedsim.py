@@ -125,13 +125,13 @@ def _scene(file: OpenedScene, texts: Sequence[OpenedScene], report: Report) -> D
     _model(root, scene, report)
     places = _Places(floor=floor)
     for name, into in (("exits", places.exits), ("checkpoints", places.checkpoints)):
-        for item in _entries(root, name):
+        for item in root.entries(name):
             into[item.name], how = rectangle_in(pairs(item.need("coordinates")), floor)
             row = SCENARIO.rows[1 if name == "exits" else 7]
             report.interpreted(item, row.ours, how or row.note)
             report.others(item, "exits and checkpoints have no such parameter")
     journeys = _journeys(root, places, report)
-    for item in _entries(root, "distributions"):
+    for item in root.entries("distributions"):
         _distribution(item, places, journeys, scene, report)
     for name, at in _LEFT_OUT.items():
         if (left := root.find(name)) is not None:
@@ -143,11 +143,6 @@ def _scene(file: OpenedScene, texts: Sequence[OpenedScene], report: Report) -> D
         if not item.used and (item.name.startswith("_") or item.name in ("project_version",)):
             report.left_out(item, "for people and for other programs")
     return scene
-
-
-def _entries(root: Item, name: str) -> list[Item]:
-    listed = root.find(name)
-    return listed.every() if listed else []
 
 
 def _root(top: Item) -> Item:
@@ -185,7 +180,7 @@ def _without_obstacles(root: Item, floor: Any, scene: Draft, report: Report) -> 
     """Return the walkable area less the obstacles that are given beside it."""
     from shapely import Polygon, to_wkt  # type: ignore[import-untyped,unused-ignore]
 
-    for item in _entries(root, "obstacles"):
+    for item in root.entries("obstacles"):
         shape = valid_shape(Polygon(pairs(item.need("coordinates"))))
         if shape.intersection(floor).area > 0.0:
             floor = floor.difference(shape)
@@ -228,10 +223,10 @@ def _model(root: Item, scene: Draft, report: Report) -> None:
 def _journeys(root: Item, places: _Places, report: Report) -> dict[str, list[str]]:
     """Return the names of the stages of each journey, in turn."""
     journeys: dict[str, list[str]] = {}
-    starts = {item.name for item in _entries(root, "distributions")}
+    starts = {item.name for item in root.entries("distributions")}
     known = {*places.exits, *places.checkpoints, *starts}
     for listed, stages in (("journeys_v2", "sequence"), ("journeys", "stages")):
-        for item in _entries(root, listed):
+        for item in root.entries(listed):
             ident = item.need("id").text()
             names = item.find(stages)
             journeys[ident] = [part.text() for part in names.every()] if names else []

@@ -202,24 +202,24 @@ def _style(item: Item, report: Report) -> None:
 def _data(root: Item, report: Report) -> RobotSfMap:
     sf_map = RobotSfMap(root)
     _margins(root, sf_map, report)
-    for item in [*_entries(root, "obstacles"), *_entries(root, "Obstacles")]:
+    for item in [*root.entries("obstacles"), *root.entries("Obstacles")]:
         report.others(item, "blocks have names of their own", "ID")
         vertices = item.find("vertices") or item.find("Vertex")
         sf_map.obstacles.append((item, pairs(vertices or item)))
     for kind in ("robot_spawn", "robot_goal", "ped_spawn", "ped_goal", "ped_crowded"):
-        listed = _entries(root, f"{kind}_zones")
+        listed = root.entries(f"{kind}_zones")
         if kind.endswith("goal") and not listed:
-            listed = _entries(root, "goal_zones")
+            listed = root.entries("goal_zones")
         known = sf_map.zones.setdefault(f"{kind}_zone", {})
         for item in listed:
             known[len(known)] = (item, _zone(item))
             report.carried(item, "zones")
     for kind, into in (("robot", sf_map.robot_routes), ("ped", sf_map.ped_routes)):
-        for item in _entries(root, f"{kind}_routes"):
+        for item in root.entries(f"{kind}_routes"):
             points = pairs(item.need("waypoints"), 2)
             spawn, goal = item.need("spawn_id").whole(0), item.need("goal_id").whole(0)
             into.append(RobotSfRoute(item, spawn, goal, points))
-    for item in _entries(root, "single_pedestrians"):
+    for item in root.entries("single_pedestrians"):
         sf_map.people.append(_single(item, report))
     return sf_map
 
@@ -235,11 +235,6 @@ def _margins(root: Item, sf_map: RobotSfMap, report: Report) -> None:
         for m in margins:
             if m is not None:
                 report.carried(m, "environment.area")
-
-
-def _entries(root: Item, name: str) -> list[Item]:
-    listed = root.find(name)
-    return listed.every() if listed else []
 
 
 def _zone(item: Item) -> Corners:

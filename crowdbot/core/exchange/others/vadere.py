@@ -97,7 +97,7 @@ def _scene(file: OpenedScene, report: Report) -> Draft:
 def _topography(item: Item, into: Topography) -> None:
     report, scene = into.report, into.scene
     _bounds(item.need("attributes"), scene, report)
-    for obstacle in _entries(item, "obstacles"):
+    for obstacle in item.entries("obstacles"):
         add_obstacle(obstacle, scene, report)
         take_ids(obstacle, report)
         report.carried(obstacle, "environment.blocks")
@@ -106,17 +106,12 @@ def _topography(item: Item, into: Topography) -> None:
             empty = not part.children and part.value is None
             report.carried(part, "(empty)") if empty else report.left_out(part, row.note)
     _people(item, scene, report)
-    for target in _entries(item, "targets"):
+    for target in item.entries("targets"):
         _target(target, into)
-    for source in _entries(item, "sources"):
+    for source in item.entries("sources"):
         add_source(source, into)
-    for element in _entries(item, "dynamicElements"):
+    for element in item.entries("dynamicElements"):
         _element(element, into)
-
-
-def _entries(item: Item, name: str) -> list[Item]:
-    listed = item.find(name)
-    return listed.every() if listed else []
 
 
 def _bounds(attributes: Item, scene: Draft, report: Report) -> None:
