@@ -88,6 +88,8 @@ _TOGETHER: Mapping[str, str] = {
         "as radius."
     ),
     "MORE_WALLS": "Result of `prepare` where walls that were not given may matter.",
+    "SAME_POINT": "Nearest points of walls that are nearer to each other than this in x and in y "
+    "count once, m.",
     "NEAR_WALLS": "`wall_reach` of functions whose farther walls `first_collision` looks up, m.",
 }
 #: Heading -> beginnings of the modules, below crowdbot.core, from which its names come.

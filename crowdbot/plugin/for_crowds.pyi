@@ -20,7 +20,11 @@ from crowdbot.core.crowd.velocity_search.cost import NEAR_WALLS as NEAR_WALLS
 from crowdbot.core.crowd.velocity_search.farther_walls import walls_closer_than as walls_closer_than
 from crowdbot.core.crowd.velocity_search.gradient import Descent as Descent
 from crowdbot.core.crowd.velocity_search.minstd import draw as draw
+from crowdbot.core.crowd.velocity_search.nearest_points import (
+    write_nearest_points as write_nearest_points,
+)
 from crowdbot.core.crowd.velocity_search.optimum import Optimum as Optimum
+from crowdbot.core.crowd.velocity_search.point_grid import SAME_POINT as SAME_POINT
 from crowdbot.core.crowd.velocity_search.sampling import Sampler as Sampler
 from crowdbot.core.crowd.velocity_search.weighted_costs import WeightedCosts as WeightedCosts
 from crowdbot.core.types.candidates import VelocityCandidates as VelocityCandidates

@@ -34,7 +34,7 @@ class SegmentGrid(NamedTuple):
     near: Indices
 
 
-def segment_grid(segments: Array, reach: float) -> SegmentGrid:
+def segment_grid(segments: Array, reach: float, most_cells: int = _MOST_CELLS) -> SegmentGrid:
     """Return a grid with all segments (S, 4) within reach (m) of any point of each cell.
 
     Points outside of the grid have no segment within reach. The segments of a cell keep their
@@ -48,7 +48,7 @@ def segment_grid(segments: Array, reach: float) -> SegmentGrid:
     ends = segments.reshape(-1, 2)
     low, high = ends.min(axis=0) - far, ends.max(axis=0) + far
     width, height = (high - low).tolist()
-    side = max(0.2 * reach, math.sqrt(width * height / _MOST_CELLS), max(width, height) / 4096.0)
+    side = max(0.2 * reach, math.sqrt(width * height / most_cells), max(width, height) / 4096.0)
     columns, rows = math.ceil(width / side), math.ceil(height / side)
     cells, items = [], []
     for s, (ax, ay, bx, by) in enumerate(segments.tolist()):
@@ -66,7 +66,7 @@ def segment_grid(segments: Array, reach: float) -> SegmentGrid:
     return SegmentGrid(frame, first.astype(np.int64), near[order].astype(np.int64))
 
 
-class _Same:
+class Same:
     """A cache key that compares an array by identity, and keeps it so that its id is not reused."""
 
     __slots__ = ("segments",)
@@ -78,17 +78,17 @@ class _Same:
         return id(self.segments)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and self.segments is other.segments
+        return isinstance(other, Same) and self.segments is other.segments
 
 
-def grid_of(segments: Array, reach: float) -> SegmentGrid:
+def grid_of(segments: Array, reach: float, most_cells: int = _MOST_CELLS) -> SegmentGrid:
     """Return the cached `segment_grid` of an array that does not change."""
-    return _grid_of(_Same(segments), reach)
+    return _grid_of(Same(segments), reach, most_cells)
 
 
 @lru_cache(maxsize=16)
-def _grid_of(same: _Same, reach: float) -> SegmentGrid:
-    return segment_grid(same.segments, reach)
+def _grid_of(same: Same, reach: float, most_cells: int) -> SegmentGrid:
+    return segment_grid(same.segments, reach, most_cells)
 
 
 def _within(x: Array, y: Array, segment: tuple[float, float, float, float], far: float) -> Array:

@@ -101,6 +101,9 @@ class CompiledCost:
             the crowd needs more; `prepare` then checks that it has all walls that it needs.
         looks_farther: True if farther walls may change a result, and the functions look for them
             where they do: by `first_collision`, or by `MORE_WALLS`.
+        points: reach and fading, m: the function looks up the nearest points of walls by
+            `write_nearest_points`, up to the reach, and those beyond count exp(-1) times less for
+            each fading; (0, 0) if it does not.
         walls_on_the_way: True if, where gradients are followed, only those walls may change a
             result that the agent comes within the metres of ``wall_reach`` of, in its seconds, at
             the present velocity.
@@ -124,6 +127,7 @@ class CompiledCost:
     reach_with_own: bool = False
     reach_at_preferred: bool = False
     looks_farther: bool = False
+    points: tuple[float, float] = (0.0, 0.0)
     walls_on_the_way: bool = False
     optimum_by_nearby_walls: bool = False
 

@@ -115,6 +115,10 @@ class FloorRecord:
         x0, y0, x1, y1: box around them, m.
         left, bottom, per_metre, columns, rows: as in the frame of a `SegmentGrid`.
         first, near: addresses of its other arrays.
+        points_reach: reach of the `PointGrid`, m; 0 if there is none.
+        points_left, points_bottom, points_per_metre, points_columns, points_rows: its frame.
+        points_first, points_walls, points_first_pair, points_pairs, points_beyond: addresses of its
+            other arrays.
     """
 
     walls: float
@@ -130,6 +134,17 @@ class FloorRecord:
     rows: float
     first: float
     near: float
+    points_reach: float
+    points_left: float
+    points_bottom: float
+    points_per_metre: float
+    points_columns: float
+    points_rows: float
+    points_first: float
+    points_walls: float
+    points_first_pair: float
+    points_pairs: float
+    points_beyond: float
 
 
 class CostParams:

@@ -218,7 +218,8 @@ class WeightedCosts:
         if self.parity or self.vectorised:
             metres, seconds, own, preferred = reach, 0.0, False, False
             covered, way, more = reach, False, False
-        self._floor, floor = floor_of(walls, self.largest)
+        reaches, fadings = zip((0.0, 0.0), *(c.points for c in self.compiled), strict=True)
+        self._floor, floor = floor_of(walls, self.largest, (max(reaches), max(fadings)))
         values = metres, seconds, own, preferred, covered, way, more, floor
         for name, value in zip(_WALL_SETTINGS, values, strict=True):
             self._settings[name][:] = value

@@ -10,15 +10,14 @@ from crowdbot.plugin import (
     WallRecord,
     array_kernel,
 )
+from crowdbot.plugin.for_crowds import SAME_POINT
 
-#: Points nearer to each other than this are one, m.
-SAME = 1e-9
 #: Points are sorted into rings by their squared distance, this many per m^2; equal points lie in
 #: one or in neighbours.
 _RINGS = 1e3
-#: The squared distances of equal points differ by less than 2 SAME (1 + d^2): with |dx| and |dy| up
-#: to SAME by at most 2^1.5 d SAME, and 2 d is at most 1 + d^2.
-_BORDER = 2.0 * SAME * _RINGS
+#: The squared distances of equal points differ by less than 2 SAME_POINT (1 + d^2): with |dx| and
+#: |dy| up to SAME_POINT by at most 2^1.5 d SAME_POINT, and 2 d is at most 1 + d^2.
+_BORDER = 2.0 * SAME_POINT * _RINGS
 #: With fewer walls all pairs are tried.
 _FEW = 16
 #: Entries of ``work`` before the chosen walls; forces need fewer.
@@ -97,7 +96,7 @@ def _leave_out_of_few(walls: Rows[WallRecord], count: int, work: Pointer) -> int
 @array_kernel
 def _are_one(walls: Rows[WallRecord], s: int, other: int) -> bool:
     dx, dy = walls[s].nx - walls[other].nx, walls[s].ny - walls[other].ny
-    return bool(abs(dx) <= SAME and abs(dy) <= SAME)
+    return bool(abs(dx) <= SAME_POINT and abs(dy) <= SAME_POINT)
 
 
 @array_kernel

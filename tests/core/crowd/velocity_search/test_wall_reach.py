@@ -21,9 +21,9 @@ from crowdbot.core.crowd.velocity_search.records import WALL, WORK_COLUMNS
 from crowdbot.core.support.records import rows_of
 from crowdbot.core.types.arrays import Array
 from crowdbot.plugin import Pointer
+from crowdbot.plugin.for_crowds import SAME_POINT
 from crowdbot.plugins.crowd.cost_functions.orca_build import change, is_out_of_the_way
 from crowdbot.plugins.crowd.cost_functions.wall_points_build import (
-    SAME,
     choose,
     chosen,
     leave_out_repeated,
@@ -106,12 +106,12 @@ def test_walls_are_points_that_count_once() -> None:
     rng = np.random.default_rng(2)
     walls = rows_of(300, WALL)
     x, y = rng.choice([-2.0, -1e-6, 0.0, 1e-6, 0.75, 3.0], (2, 300))
-    walls["nx"][:] = x + rng.choice([0.0, -0.4 * SAME, 0.4 * SAME, 0.9 * SAME, 3.0 * SAME], 300)
-    walls["ny"][:] = y + rng.choice([0.0, -0.7 * SAME], 300)
+    walls["nx"][:] = x + SAME_POINT * rng.choice([0.0, -0.4, 0.4, 0.9, 3.0], 300)
+    walls["ny"][:] = y + rng.choice([0.0, -0.7 * SAME_POINT], 300)
     walls["d2"][:] = walls["nx"] ** 2 + walls["ny"] ** 2
     point = np.stack([walls["nx"], walls["ny"]], axis=1)
     gap = np.abs(point[:, np.newaxis] - point[np.newaxis]).max(axis=2)
-    expected = ~np.any(np.tril(gap <= SAME, -1), axis=1)
+    expected = ~np.any(np.tril(gap <= SAME_POINT, -1), axis=1)
     assert 30 < np.count_nonzero(expected) < 200
     work = np.zeros(1 + 7 * WORK_COLUMNS * 300)
     for number in (300, 12):
