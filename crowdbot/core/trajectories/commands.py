@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crowdbot.core.support.arguments import number_of, path_of
-from crowdbot.core.support.csv_columns import read_columns
 from crowdbot.core.support.immutable import immutable
+from crowdbot.core.trajectories.table_columns.frames import in_seconds
+from crowdbot.core.trajectories.text_table import read_table
 from crowdbot.core.types.arrays import Array
 from crowdbot.errors import InputError
 
@@ -78,12 +79,19 @@ class Commands:
     def from_csv(
         cls, path: Path | str, *, v_max: float, w_max: float, t_end: float | None = None
     ) -> Commands:
-        """Read a table with the columns t, v_user, w_user, v_sc, w_sc; others are ignored.
+        """Read a table with the columns t, v_user, w_user, v_sc, w_sc, as `Trajectories` does.
+
+        Others are ignored. Stamps are counted from the first.
 
         Raises:
             InputError: it cannot be read, a column is missing, or a cell is not a number.
         """
-        columns = read_columns(path_of("path", path), COLUMNS)
+        table = read_table(path_of("path", path), {}, COLUMNS)
+        table.require("", *COLUMNS)
+        seconds = in_seconds({"commands": table}, None)["commands"]
+        stamps = seconds.stamps()
+        times, _ = seconds.times(origin=0 if stamps is None else int(stamps.min()))
+        columns = {"t": times, **{name: table.numbers(name) for name in COLUMNS[1:]}}
         return cls.from_arrays(**columns, v_max=v_max, w_max=w_max, t_end=t_end)
 
     @property

@@ -64,7 +64,8 @@ class RawTable:
         """Require columns of a table.
 
         Args:
-            role: kind of table: robot, agents, trips, contacts.
+            role: kind of table that the caller can rename columns of: robot, agents, trips,
+                contacts; empty if there is no such argument.
             columns: required columns.
 
         Raises:
@@ -80,10 +81,10 @@ class RawTable:
                 )
             renaming = ", ".join(f"'{c}': 'ITS NAME THERE'" for c in missing)
             subject = "columns {} are" if len(missing) > 1 else "column {} is"
+            called = f"columns={{'{role}': {{{renaming}}}}} says what they are called"
             raise InputError(
                 f"{self.name}:1: the {subject.format(', '.join(missing))} missing; "
-                f"the table has {has}; columns={{'{role}': {{{renaming}}}}} says what they are "
-                "called"
+                f"the table has {has}; {called if role else 'rename what holds them'}"
             )
 
     def numbers(self, column: str) -> Array:

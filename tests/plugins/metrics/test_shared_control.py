@@ -275,6 +275,11 @@ def test_commands_from_a_table(tmp_path: Path) -> None:
     file.write_text("t,v_user,w_user,v_sc,w_sc,note\n0,1,0,1,0,a\n1,1,0,-1,0,b\n3,1,0,1,0,c\n")
     commands = Commands.from_csv(file, v_max=1, w_max=1)
     assert value_of(of("agreement", commands)) == pytest.approx(1 / 3)
+    degrees = "# a drive\nt_ms;v_user;w_user [deg/s];v_sc;w_sc\n0;0,5;90;1;0\n500;0,5;0;1;0\n"
+    file.write_text(degrees)
+    other = Commands.from_csv(file, v_max=1, w_max=1)
+    np.testing.assert_allclose([*other.t, *other.v_user], [0.0, 0.5, 0.5, 0.5])
+    np.testing.assert_allclose(other.w_user, [np.pi / 2, 0.0])
     file.write_text("t,v_user,w_user,v_sc\n0,1,0,1\n")
     with pytest.raises(InputError, match=r"commands.csv:1: the column w_sc is missing"):
         Commands.from_csv(file, v_max=1, w_max=1)

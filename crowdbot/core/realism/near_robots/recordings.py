@@ -79,7 +79,7 @@ def _table(path: Path) -> Clip:
     The robot's rows have ``radius`` (m) and may have ``theta`` (rad).
     """
     table = read_table(path, {}, _COLUMNS)
-    table.require("agents", "t", "id", "x", "y")
+    table.require("", "t", "id", "x", "y")
     table = in_seconds({"agents": table}, None)["agents"]
     mine = np.array([str(cell).strip() == ROBOT_ID for cell in table.columns["id"]], np.bool_)
     if not mine.any() or mine.all():

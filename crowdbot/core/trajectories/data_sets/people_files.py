@@ -51,7 +51,7 @@ def people_table(path: Path, scale: VideoScale = AS_STATED) -> RawTable:
         table, notes = eth_ucy_table(path, scale.frame_rate, scale.homography)
         return replace(table, notes=[*table.notes, *(f"{path}: {note}" for note in notes)])
     table = without_robots(read_table(path, {}, AGENT))
-    table.require("agents", *AGENT[:4])
+    table.require("", *AGENT[:4])
     placed = in_metres(table, scale.homography)
     return in_seconds({"agents": placed}, scale.frame_rate)["agents"]
 

@@ -11,9 +11,9 @@ from crowdbot.core.trajectories.raw_table import Cells, RawTable
 
 #: Vadere's columns end in the number of what wrote them: ``startX-PID1``.
 _PROCESSOR = re.compile(r"-PID\d+$")
-_LENGTHS = ("x", "y", "vx", "vy", "radius")
+_LENGTHS = ("x", "y", "v", "vx", "vy", "v_user", "v_sc", "radius")
 #: Columns that may be in another unit than ours, by themselves.
-_OTHERS = ("t", "theta", "w")
+_OTHERS = ("t", "theta", "w", "w_user", "w_sc")
 #: Unit of lengths -> metres.
 _METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 #: Unit of times and angles -> seconds, rad.
