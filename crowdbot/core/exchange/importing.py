@@ -20,6 +20,7 @@ from crowdbot.core.exchange.ways_out import keep_ways
 from crowdbot.core.exchange.write import WrittenLine, document
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.trajectories.data_sets.homography import AS_STATED, VideoScale
+from crowdbot.core.trajectories.data_sets.people_files import people_table
 from crowdbot.dsl.text.diagnostics import Diagnostic
 from crowdbot.errors import InputError, SpecError
 
@@ -131,6 +132,15 @@ _ELSEWHERE = (
 )  # fmt: skip
 
 
+def _why_not(file: OpenedScene) -> str:
+    """Return why a file cannot be read as a table of people, or ""."""
+    try:
+        people_table(file.path)
+    except InputError as error:
+        return f"as recorded people it cannot be read: {error}"
+    return ""
+
+
 def _format_of(file: OpenedScene) -> SceneFormat:
     for form in FORMATS.values():
         if form.fits(file):
@@ -142,5 +152,7 @@ def _format_of(file: OpenedScene) -> SceneFormat:
          if tag in file.tags or tag == file.path.suffix.lower()),
         f"known are {', '.join(form.title for form in FORMATS.values())}",
     )  # fmt: skip
+    if hint == _TRACKS:
+        hint = _why_not(file) or hint
     mark = file.roots[0].mark if file.roots else file.top
     raise SpecError([Diagnostic("E403", message, mark, hint)])

@@ -242,10 +242,13 @@ def _on_samples(
             f"{table.where(int(off[0]))}: t = {rows['t'][off[0]]:g} s is not a sample of the "
             "robot; resample='robot' interpolates people there, resample=20 everything at 20 Hz"
         )
-    cells, count = np.unique(k * len(ids) + column, return_counts=True)
+    cells = k * len(ids) + column
+    found, count = np.unique(cells, return_counts=True)
     if np.any(count > 1):
-        at, person = divmod(int(cells[count > 1][0]), len(ids))
-        raise InputError(f"{table.name}: two rows of id {ids[person]} at t = {t[at]:g} s")
+        twice = int(found[count > 1][0])
+        at, person = divmod(twice, len(ids))
+        second = int(np.flatnonzero(cells == twice)[1])
+        raise InputError(f"{table.where(second)}: two rows of id {ids[person]} at t = {t[at]:g} s")
     made: dict[str, Any] = {}
     for name in ("x", "y", "vx", "vy"):
         if name in rows:

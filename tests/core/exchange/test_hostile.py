@@ -149,7 +149,7 @@ def test_mutated_files_never_end_in_a_traceback(tmp_path: Path, name: str) -> No
         ("a.world", 'floorplan (bitmap "maze.png")', "a map.yaml that names its bitmap is"),
         ("a.osm", "<osm version='0.6'/>", "{kind: floor_plan, file: plan.wkt}"),
         ("a.ifc", "ISO-10303-21;", "IFC is not read"),
-        ("a.csv", "1,2,3,4,5,6,7,8,9\n", "a table whose header names t (or frame), id, x and y"),
+        ("a.csv", "1,2,3,4,5,6,7,8,9\n", "as recorded people it cannot be read"),
         ("r.urdf", "<robot name='r'/>", "robots.robot.model: {kind: urdf, file: r.urdf}"),
         ("map.yaml", "{image: m.pgm, occupied_thresh: 0.6}", "{kind: floor_plan, file: map.yaml}"),
     ],

@@ -34,7 +34,11 @@ def findings(t: Array, speeds: dict[str, float]) -> Iterator[str]:
         yield f"median time between samples {step:.3g} s: minutes or hours? Times are in seconds"
     elif step > STEPS[1]:
         yield f"median time between samples {step:.3g} s: {_advice(step, fastest)}"
-    elif fastest is not None and fastest < CREEPING and np.all(t == np.round(t)):
+    elif (
+        fastest is not None
+        and fastest < CREEPING <= 3.0 * fastest * _ticks(step, fastest)[1]
+        and np.all(t == np.round(t))
+    ):
         fastest_name = max(speeds, key=lambda name: speeds[name])
         yield (
             f"{fastest_name}: median speed {fastest:.3g} m/s, and all times are whole numbers: "

@@ -15,7 +15,7 @@ _LENGTHS = ("x", "y", "v", "vx", "vy", "v_user", "v_sc", "radius")
 #: Columns that may be in another unit than ours, by themselves.
 _OTHERS = ("t", "theta", "w", "w_user", "w_sc")
 #: Unit of lengths -> metres.
-_METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+_METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "ft": 0.3048}
 #: Unit of times and angles -> seconds, rad.
 _SCALES = {
     "s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9,

@@ -192,3 +192,31 @@ def test_damaged_databases(tmp_path: Path, content: bytes, message: str) -> None
     (tmp_path / "a.sqlite").write_bytes(content)
     with pytest.raises(InputError, match=message):
         people_table(tmp_path / "a.sqlite")
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        ("a.csv", "t,id,x,y\n0,1,0,0\n0,1,1,0\n", r"a\.csv:3: two rows of id 1 at t = 0 s"),
+        ("a.txt", "# fps: 25\n# fps: 16\n1 0 0 0\n", "its comments state 16 and 25 frames"),
+        ("a.txt", '0 200 300 230 380 0 0 0 0 "Pedestrian"\n', "as in the Stanford Drone Dataset"),
+        (
+            "a.csv",
+            "t,id,lat,lon\n0,1,48,11\n",
+            "columns x, y are missing; the table has t, id",
+        ),
+    ],
+)
+def test_import_says_why_a_table_is_none(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, text: str, message: str
+) -> None:
+    (tmp_path / name).write_text(text)
+    assert main(["import", str(tmp_path / name)]) == 1
+    assert re.search(message, capsys.readouterr().err)
+
+
+def test_degrees_in_whole_seconds_are_no_frames(tmp_path: Path) -> None:
+    rows = [f"{k},1,{11 + 1e-5 * k},{48 + 1e-5 * k}" for k in range(9)]
+    (tmp_path / "a.csv").write_text("t,id,x,y\n" + "\n".join(rows))
+    with pytest.warns(RecordingWarning, match="longitude and latitude"):
+        Trajectories.from_csv(agents=tmp_path / "a.csv")
