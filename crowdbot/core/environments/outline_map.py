@@ -60,6 +60,13 @@ def outline_map(parts: EnvironmentParts, inside: Iterable[Point]) -> OutlineMap:
     )
 
 
+def floor_points(found: OutlineMap) -> list[tuple[float, float]]:
+    """Return a position on every part of the floor that obstacles leave, m."""
+    left = shapely.union_all(found.floor).difference(shapely.union_all(found.obstacles))
+    points = [p.representative_point() for p in shapely.get_parts(left)]
+    return [(p.x, p.y) for p in points if not p.is_empty]
+
+
 def to_geojson(
     found: OutlineMap, zones: Mapping[str, Array], portals: Mapping[str, tuple[float, ...]]
 ) -> str:

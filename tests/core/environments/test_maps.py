@@ -100,6 +100,25 @@ def test_what_hangs_above_the_robot_is_not_in_the_grid(tmp_path: Path) -> None:
     assert cells[int((6.0 - origin[1]) / side), int((0.0 - origin[0]) / side)] == 254
 
 
+def test_outside_a_place_without_robots_and_zones_is_unknown(tmp_path: Path) -> None:
+    corners = [[0, 0], [10, 0], [10, 10], [6, 10], [6, 4], [0, 4], [0, 0]]
+    (tmp_path / "plan.geojson").write_text(
+        json.dumps({"type": "Polygon", "coordinates": [corners]}), encoding="utf-8"
+    )
+    spec = tmp_path / "spec.yaml"
+    spec.write_text(
+        "crowdbot: 1\nscenario:\n  id: a\n  environment: {kind: floor_plan, file: plan.geojson}\n",
+        encoding="utf-8",
+    )
+    assert main(["export-map", str(spec), "--out", str(tmp_path)]) == 0
+    cells, origin, side = _cells(tmp_path)
+
+    def at(x: float, y: float) -> int:
+        return int(cells[int((y - origin[1]) / side), int((x - origin[0]) / side)])
+
+    assert [at(2.0, 2.0), at(8.0, 8.0), at(2.0, 8.0)] == [254, 254, 205]
+
+
 def test_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     argv = ["export-map", SHED, "--out", str(tmp_path / "a" / "b"), "--json", "--resolution", "0.2"]
     assert main(argv) == 0

@@ -34,7 +34,7 @@ def export_map(
     """
     from crowdbot.core.environments.build import build_environment
     from crowdbot.core.environments.grid_map import grid_map
-    from crowdbot.core.environments.outline_map import outline_map, to_geojson
+    from crowdbot.core.environments.outline_map import floor_points, outline_map, to_geojson
     from crowdbot.core.scenarios.library import open_spec, pick
     from crowdbot.core.support.atomic_write import atomic_write
 
@@ -46,7 +46,11 @@ def export_map(
     inside = _inside(chosen)
     found = outline_map(parts, inside)
     grid = grid_map(
-        found, parts.walls[parts.stops_robot], inside, resolution, _height(chosen, registry)
+        found,
+        parts.walls[parts.stops_robot],
+        inside or floor_points(found),
+        resolution,
+        _height(chosen, registry),
     )
     folder = out or Path(f"{chosen.id.replace('/', '_')}.map")
     files = {
