@@ -12,16 +12,7 @@ from numba.core.errors import NumbaError
 
 import crowdbot.testing.crowd_views as crowd_views
 from crowdbot.core.crowd import CrowdView
-from crowdbot.core.crowd.velocity_search.cost import (
-    BASE,
-    EXCESS,
-    GRADIENT,
-    LOWER_BOUND,
-    OPTIMUM,
-    PREPARE,
-    CompiledCost,
-    NumpyCost,
-)
+from crowdbot.core.crowd.velocity_search.cost import SIGNATURES, CompiledCost, NumpyCost
 from crowdbot.core.crowd.velocity_search.cost_calls import address_of
 from crowdbot.core.crowd.velocity_search.evaluate import Evaluator
 from crowdbot.core.crowd.velocity_search.gradient import Descent
@@ -34,14 +25,6 @@ from crowdbot.testing.cost_parts import above_lower_bound, bases_of, forgets_wor
 
 Cost = CompiledCost | NumpyCost
 
-_SIGNATURES = {
-    "base": BASE,
-    "prepare": PREPARE,
-    "excess": EXCESS,
-    "gradient": GRADIENT,
-    "optimum": OPTIMUM,
-    "lower_bound": LOWER_BOUND,
-}
 _TURN = 0.7  # rad
 
 
@@ -58,7 +41,7 @@ def check_signatures(component: Component[Any], registry: Registry | None = None
         if isinstance(cost, NumpyCost):
             assert cost.range >= 0.0, f"the range is {cost.range}"
             continue
-        for name, signature in _SIGNATURES.items():
+        for name, signature in SIGNATURES.items():
             _assert_compiled(name, getattr(cost, name), signature)
         assert cost.params.dtype == np.float64, f"params are {cost.params.dtype}"
         assert cost.params.ndim == 1, f"params have {cost.params.ndim} dimensions"

@@ -14,6 +14,7 @@ from pydantic import ValidationError
 
 from crowdbot.core.registry.registry import Registry
 from crowdbot.core.scoring.metric import Metric, References
+from crowdbot.core.scoring.scores_csv import COLUMNS
 from crowdbot.core.support.arguments import expect, mapping_of, texts_of
 from crowdbot.core.support.data_frame import to_arrow, to_pandas
 from crowdbot.core.trajectories.commands import Commands
@@ -40,13 +41,6 @@ if TYPE_CHECKING:
 
 #: Metric -> field -> value.
 MetricParameters = Mapping[str, Mapping[str, object]]
-
-
-#: Columns of a data frame of scores.
-_COLUMNS = (
-    "scenario", "planner", "seed", "category", "metric", "symbol", "variant", "value", "unit",
-    "better", "status", "reason", "lower", "upper",
-)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +98,7 @@ class Scores(Sequence[Score]):
         Raises:
             InputError: pandas is not installed.
         """
-        return to_pandas(self._rows(), _COLUMNS)
+        return to_pandas(self._rows(), COLUMNS)
 
     def to_arrow(self) -> pa.Table:
         """Return the scores as an Arrow table; missing values are null.
@@ -112,11 +106,11 @@ class Scores(Sequence[Score]):
         Raises:
             InputError: pyarrow is not installed.
         """
-        return to_arrow(self._rows(), _COLUMNS)
+        return to_arrow(self._rows(), COLUMNS)
 
     def _rows(self) -> list[dict[str, object]]:
         run = {"scenario": self.scenario, "planner": self.planner, "seed": self.seed}
-        return [{**run, **{n: getattr(s, n) for n in _COLUMNS[3:]}} for s in self.items]
+        return [{**run, **{n: getattr(s, n) for n in COLUMNS[3:]}} for s in self.items]
 
     def _repr_html_(self) -> str:
         """Return an HTML table for notebooks."""

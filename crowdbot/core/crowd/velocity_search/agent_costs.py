@@ -18,7 +18,8 @@ from crowdbot.core.types.arrays import Array, Indices
 
 #: Table (K, 8) of addresses: a row per cost function, columns as below.
 Functions = NDArray[np.intp]
-# Columns of `Functions`: the parts of a function, 0 if missing; its parameters; its scratch table.
+# Columns of `Functions`: the parts of a function in the order of `cost.SIGNATURES`, 0 if missing;
+# its parameters; its scratch table.
 BASES, PREPARES, EXCESSES, LOWER_BOUNDS, GRADIENTS, OPTIMA, PARAMS, WORK = range(8)
 FUNCTION_COLUMNS = 8
 

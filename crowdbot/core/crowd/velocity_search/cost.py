@@ -39,7 +39,7 @@ for the first collision share `crowdbot.core.crowd.velocity_search.collision`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -64,6 +64,11 @@ EXCESS = types.float64(_F, _F, _F, _AGENT, _P, _P)
 GRADIENT = types.int64(_F, _F, _AGENT, _P, _P, _P)
 OPTIMUM = types.int64(_AGENT, _P, _P, _P)
 LOWER_BOUND = types.int64(_I, _P, _P, _AGENT, _P, _P, _P)
+#: Field of `CompiledCost` -> signature of its function, in the order of `agent_costs.BASES` etc.
+SIGNATURES: Mapping[str, Any] = {
+    "base": BASE, "prepare": PREPARE, "excess": EXCESS, "lower_bound": LOWER_BOUND,
+    "gradient": GRADIENT, "optimum": OPTIMUM,
+}  # fmt: skip
 
 
 #: Result of ``prepare`` where walls that were not given may matter.

@@ -12,27 +12,11 @@ from numpy.typing import NDArray
 from crowdbot.core.crowd.agents import Agents
 from crowdbot.core.crowd.policy import CrowdView
 from crowdbot.core.crowd.velocity_search.agent_costs import (
-    BASES,
-    EXCESSES,
     FUNCTION_COLUMNS,
-    GRADIENTS,
-    LOWER_BOUNDS,
-    OPTIMA,
     PARAMS,
-    PREPARES,
     WORK,
 )
-from crowdbot.core.crowd.velocity_search.cost import (
-    BASE,
-    EXCESS,
-    GRADIENT,
-    LOWER_BOUND,
-    OPTIMUM,
-    PREPARE,
-    CompiledCost,
-    NumpyCost,
-    work_rows,
-)
+from crowdbot.core.crowd.velocity_search.cost import SIGNATURES, CompiledCost, NumpyCost, work_rows
 from crowdbot.core.crowd.velocity_search.cost_calls import address_of
 from crowdbot.core.crowd.velocity_search.floor import floor_of
 from crowdbot.core.crowd.velocity_search.minstd import seeds
@@ -75,16 +59,6 @@ _WALL_SETTINGS = (
     "wall_way",
     "wall_more",
     "floor",
-)
-
-# Columns of the table of addresses: part of a cost function and its signature.
-_PARTS = (
-    (BASES, "base", BASE),
-    (PREPARES, "prepare", PREPARE),
-    (EXCESSES, "excess", EXCESS),
-    (LOWER_BOUNDS, "lower_bound", LOWER_BOUND),
-    (GRADIENTS, "gradient", GRADIENT),
-    (OPTIMA, "optimum", OPTIMUM),
 )
 
 
@@ -136,7 +110,7 @@ class WeightedCosts:
         self.vectorised = [c for c in costs if isinstance(c, NumpyCost)]
         self.ordered = any(c.ordered for c in self.compiled)
         self.functions = np.zeros((len(self.compiled), FUNCTION_COLUMNS), np.intp)
-        for part, name, signature in _PARTS:
+        for part, (name, signature) in enumerate(SIGNATURES.items()):
             found = [getattr(c, name) for c in self.compiled]
             self.functions[:, part] = _addresses(found, signature)
         width = max((len(c.params) for c in self.compiled), default=2)
