@@ -162,6 +162,11 @@ class CrowdEngine:
         others = self._steering is not None or grouped or border or self._led
         return not (self._router is not None or others)
 
+    @property
+    def steers(self) -> bool:
+        """Return True if steering parts change what policies decide."""
+        return self._steering is not None
+
     def _stays_first(self, rows: Array) -> NDArray[np.bool_]:
         """Return (N,) True for agents that begin with a stay at their first goal, a point."""
         a = self.agents

@@ -155,8 +155,11 @@ def agents(engine: CrowdEngine | None) -> AgentsHeader | None:
 
 
 def choosers(engine: CrowdEngine | None) -> list[CandidateGroup]:
-    """Return people with known candidate velocities; empty without an engine."""
-    if engine is None:
+    """Return people whose motion follows from known candidate velocities.
+
+    Empty without an engine, and with steering parts: these change every velocity that is chosen.
+    """
+    if engine is None or engine.steers:
         return []
     a, groups = engine.agents, list[CandidateGroup]()
     for number, policy in enumerate(engine.policies):

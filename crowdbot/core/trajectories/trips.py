@@ -110,6 +110,10 @@ def walked_distances(run: Trajectories, jump_speed: float) -> tuple[Array, Array
 
     Both from the samples inside the trip; teleports add no length.
     """
+    return run.cached(("walked_distances", jump_speed), lambda: _walked_distances(run, jump_speed))
+
+
+def _walked_distances(run: Trajectories, jump_speed: float) -> tuple[Array, Array]:
     agents = people(run)
     first, last, column = trip_samples(run)
     length, displacement = np.zeros(len(column)), np.zeros(len(column))

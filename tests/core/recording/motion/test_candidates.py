@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -13,6 +14,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from crowdbot.core.crowd import CrowdEngine
+from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.recording.header import AgentsHeader, RecordingHeader
 from crowdbot.core.recording.motion.candidates import (
     MOST_CANDIDATES,
@@ -28,6 +30,7 @@ from crowdbot.core.runs.provenance import trajectory_hash
 from crowdbot.core.sim.crowd_only import run_crowd
 from crowdbot.core.sim.run_setup import agents, choosers, ids
 from crowdbot.core.types.candidates import VelocityCandidates
+from crowdbot.dsl.scenario.steering import SteeringSpec
 from crowdbot.errors import InputError
 from crowdbot.plugins.crowd.policies.velocity_space import VelocitySpaceSpec
 from crowdbot.plugins.crowd.policies.velocity_space_build import candidates_of
@@ -68,6 +71,20 @@ def test_known_choices_make_a_crowd_small_and_change_nothing(tmp_path: Path) -> 
         Recording(large).trajectories()
     )
     assert small.stat().st_size < 0.5 * large.stat().st_size
+
+
+def test_candidates_that_steering_changes_are_left_out(tmp_path: Path) -> None:
+    plain = challenge("counter-d0125-slow-c20-r05")
+    wander = SteeringSpec.model_validate({"wander": {"deviation": "0.2 m/s^2", "time": "0.6 s"}})
+    world = replace(plain.world, steering=Steering(wander, key=7))
+    steered = CrowdEngine(plain.agents, world, list(plain.policies))
+    assert choosers(steered) == []
+    with_candidates = recorded(tmp_path / "with.mcap", steered, choosers(plain))
+    without = recorded(tmp_path / "without.mcap", steered, [])
+    assert without.stat().st_size < with_candidates.stat().st_size
+    assert trajectory_hash(Recording(without).trajectories()) == trajectory_hash(
+        Recording(with_candidates).trajectories()
+    )
 
 
 def test_groups_come_back() -> None:
