@@ -30,8 +30,8 @@ class OfRecord(Generic[T]):
     def __init__(self, path: str) -> None:
         self._read = attrgetter(path)
 
-    def __get__(self, row: RunRow, _: type) -> T:
-        return cast(T, self._read(row.record))
+    def __get__(self, row: RunRow | None, _: type) -> T:
+        return cast(T, self if row is None else self._read(row.record))
 
 
 @dataclass(frozen=True, kw_only=True)

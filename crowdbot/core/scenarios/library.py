@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import cache, cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 from crowdbot.core.registry.registry import Registry, registry_of
 from crowdbot.core.registry.registry_source import Whereabouts, whereabouts
@@ -24,9 +24,6 @@ from crowdbot.dsl.suite.installed import Installed
 from crowdbot.dsl.suite.suite import ParsedSuite
 from crowdbot.dsl.text.diagnostics import Diagnostic
 from crowdbot.errors import InputError, SpecError, UnknownNameError, nearest
-
-if TYPE_CHECKING:
-    pass
 
 _BUILTIN = "builtin"
 #: Errors about something missing in all plugins: kind, metric, file.

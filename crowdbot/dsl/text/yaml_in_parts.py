@@ -55,7 +55,7 @@ def _before(key: str, depth: int) -> str:
 
 
 def _below(key: str, value: object, depth: int) -> str:
-    document: dict[str, Any] = {"_": [], key: value}
+    document: dict[str, Any] = {"_" if key != "_" else "x": [], key: value}
     for _ in range(depth):
         document = {"_": document}
     return to_yaml(document).split("\n", depth + 1)[-1]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core.registry.registry import discover
@@ -24,6 +24,8 @@ VALUES = st.recursive(
 
 @settings(max_examples=150, deadline=None)
 @given(st.dictionaries(KEYS, VALUES, max_size=4))
+@example({"_": []})
+@example({"_": {"_": [1]}})
 def test_any_document(inner: dict[str, Any]) -> None:
     document = {"crowdbot": 1, "scenario": inner, "kinds": {}}
     assert to_yaml_in_parts(document) == to_yaml(document)

@@ -42,7 +42,7 @@ def spline_table(
     Args:
         path: the file.
         homography: see `Homography`; None: ``H.txt`` beside the file, else the positions are
-            metres if people then walk no faster than anyone.
+            metres if no one then walks faster than people can.
         frame_rate: frames per second of the video; None: 25.
 
     Returns:
