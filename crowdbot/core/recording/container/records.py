@@ -107,7 +107,8 @@ class Records:
                 self._left = MAX_RECORDS + 2 * len(data)
                 yield from self._records(data)
         except OSError as error:
-            raise InputError(f"{self._path}: cannot be read: {reason_of(error)}") from error
+            inside = "; a run's is run.mcap in it" if isinstance(error, IsADirectoryError) else ""
+            raise InputError(f"{self._path}: cannot be read: {reason_of(error)}{inside}") from error
 
     def channel(self, topic: str) -> Opened:
         """Return the file's description of a topic with messages; the latest of its channels."""
