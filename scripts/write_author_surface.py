@@ -38,7 +38,7 @@ _HEAD_OF_ROOMS = """\
 What crowdbot's own metrics, sensors, crowds and environments use beside that. They are modules of
 their own, for the build side.
 """
-#: What has no docstring of its own.
+#: Name without a docstring -> its description.
 _SAID = {
     "Better": "Which scores are better: `higher`, `lower`, those near the `reference`, or `none`.",
     "Incidence": "Angle between a ray and a surface's normal, above 0, at most a right angle.",
@@ -51,7 +51,8 @@ _SAID = {
     "REMOVE": "`Agents.at_goal`: leave the world.",
     "STOP": "`Agents.at_goal`: stand there.",
     "Answer": "An answer to a question, or None.",
-    "DISTANCE_TOLERANCE": "Slack of the rule who is near, m.",
+    "DISTANCE_TOLERANCE": "Tolerance of the distance within which people count as near, m.",
+    "MOST": "Largest evasion that people reach, m/s².",
     "NO_RAYS": "An array of no rays.",
     "DEEPEST": "Deepest nesting of a document of others.",
     "LARGEST_TABLE": "Largest table or picture that is read, bytes.",
@@ -84,7 +85,7 @@ _TOGETHER: Mapping[str, str] = {
         "Columns of a fan of rays: where a body begins and ends along it, and its heights, m."
     ),
     "ZERO ALONG_PREFERRED PREFERRED_SPEED": (
-        "Of `Sampling`: no velocity as base, the preferred direction as axis, the preferred speed "
+        "For `Sampling`: no velocity as base, the preferred direction as axis, the preferred speed "
         "as radius."
     ),
     "MORE_WALLS": "Result of `prepare` where walls that were not given may matter.",
@@ -182,5 +183,7 @@ def _line(name: str, module: ModuleType = plugin) -> str:
     if name in _SAID:
         return _SAID[name]
     value: Any = getattr(module, name)
+    if isinstance(value, int | float | str | tuple):  # its type's docstring says nothing
+        raise SystemExit(f"{PAGE.name}: describe {name} in {Path(__file__).name}")
     text = inspect.getdoc(getattr(value, "py_func", value)) or ""
     return " ".join(text.partition("\n\n")[0].replace("``", "`").replace("|", "\\|").split())

@@ -12,9 +12,11 @@ from crowdbot.core.trajectories.encounters import encounter, relative_velocity, 
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
 
-#: No evasion is planned in less than this, s, or with more than people reach, m/s^2: 3 m/s^2 stops
-#: a walker in one or two steps (Hase, Stein 1998).
-_SOONEST, MOST = 0.5, 3.0
+#: No evasion is planned in less than this, s.
+_SOONEST = 0.5
+#: Largest evasion that people reach, m/s^2: it stops a walker in one or two steps
+#: (Hase, Stein 1998).
+MOST = 3.0
 #: Lower relative speeds bring no one nearer, m/s.
 _STILL = 1e-3
 
