@@ -115,6 +115,8 @@ class Recording:
             self._cursor.close()
             self._cursor = None
             self._failure = self._failure or InputError(f"{self.path}: closed before it was read")
+        # Methods of this object: with them it, and the run, wait for a collection of garbage.
+        self._takers.clear()
 
     # ------------------------------------------------------------------------ questions
     @property

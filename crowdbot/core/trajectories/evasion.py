@@ -137,15 +137,16 @@ def ghost_run(run: Trajectories, alone: Trajectories) -> _Both | None:
     The ghost's values are what happens without a robot. Both have the length of the shorter record;
     None if they were not sampled at the same times after the start.
     """
-    return cached_beside(run, alone, "ghost", lambda: _ghost_run(run, alone))
+    both = samples_of_shorter(run, alone)
+    ghost = cached_beside(run, alone, "ghost", lambda: _ghost_run(*both))
+    return None if ghost is None else (both[0], ghost)
 
 
-def _ghost_run(run: Trajectories, alone: Trajectories) -> _Both | None:
-    run, alone = samples_of_shorter(run, alone)
+def _ghost_run(run: Trajectories, alone: Trajectories) -> Trajectories | None:
     since, other = run.t - run.t[0], alone.t - alone.t[0]
     if len(since) != len(other) or np.any(np.abs(since - other) > SAME_TIME):
         return None
-    return run, replace(run, agents=people(alone), trips=alone.trips, contacts=None)
+    return replace(run, agents=people(alone), trips=alone.trips, contacts=None)
 
 
 def _middle(values: Array) -> Array:

@@ -33,6 +33,9 @@ from crowdbot.core.types.person_task import TaskPerson
 from crowdbot.errors import InputError
 
 _Cached = TypeVar("_Cached")
+#: In a run's cache: the run. A run that held itself would keep its arrays, which may take 100 MB,
+#: until the next collection of garbage.
+_ITSELF = object()
 
 
 def _for_all(value: _Cached) -> _Cached:
@@ -87,8 +90,10 @@ class Trajectories(FromRecordings):
         dataclasses) are read-only.
         """
         if key not in self._cache:
-            self._cache[key] = _for_all(compute())
-        return cast(_Cached, self._cache[key])
+            made = _for_all(compute())
+            self._cache[key] = _ITSELF if made is self else made
+        found = self._cache[key]
+        return cast(_Cached, self if found is _ITSELF else found)
 
     @classmethod
     def from_arrays(

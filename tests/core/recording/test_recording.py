@@ -1,6 +1,8 @@
 from __future__ import annotations
 
+import gc
 import pickle
+import weakref
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -95,6 +97,18 @@ def test_trajectories_come_back_bit_by_bit(run: Run, record: Any, tmp_path: Path
     write_run(path, run, record=record)
     assert bits(Recording(path).trajectories()) == bits(as_given(run))
     assert bits(crowdbot.Trajectories.from_mcap(str(path))) == bits(as_given(run))
+
+
+def test_a_closed_recording_is_freed_without_a_collection_of_garbage(tmp_path: Path) -> None:
+    write_run(tmp_path / "run.mcap", FULL)
+    gc.disable()
+    try:
+        with Recording(tmp_path / "run.mcap") as recording:
+            times = weakref.ref(recording.trajectories().t)
+        del recording
+        assert times() is None
+    finally:
+        gc.enable()
 
 
 FLOATS = st.floats(width=64, allow_nan=True, allow_infinity=True, allow_subnormal=True)
