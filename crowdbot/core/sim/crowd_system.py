@@ -14,7 +14,6 @@ from pydrake.systems.framework import (
     Context,
     DiagramBuilder,
     DiscreteStateIndex,
-    LeafSystem,
     OutputPort,
     State,
 )
@@ -23,6 +22,7 @@ from crowdbot.core.assistance.led import LedPeople
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.build_crowd import in_series
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.contacts.bodies import SEEN, outlines_of, rows_of
@@ -40,7 +40,7 @@ from crowdbot.core.types.robot import RobotModel
 _NEWS = (s.ROBOT_FX, s.ROBOT_FY, s.ROBOT_TORQUE, s.CONTACTS)
 
 
-class CrowdSystem(LeafSystem):
+class CrowdSystem(Block):
     """Inputs: states of all robots. Outputs: crowd state, events, force on each robot.
 
     Attributes:

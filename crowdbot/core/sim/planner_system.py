@@ -16,7 +16,6 @@ from pydrake.systems.framework import (
     DiagramBuilder,
     DiscreteStateIndex,
     DiscreteValues,
-    LeafSystem,
 )
 
 from crowdbot.core.assistance.finder import PersonSight
@@ -35,6 +34,7 @@ from crowdbot.core.planning.planner import (
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.recording.topics import is_odometry
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.crowd_system import CrowdSystem
@@ -59,7 +59,7 @@ class GuideInputs(NamedTuple):
     lidars: tuple[str, ...]
 
 
-class PlannerSystem(LeafSystem):
+class PlannerSystem(Block):
     """Input: readings; robot and crowd for a privileged planner. Outputs: command, desired state.
 
     The command is the planner's; the desired state is the control mode's input.

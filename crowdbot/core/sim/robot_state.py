@@ -12,10 +12,10 @@ from pydrake.systems.framework import (
     DiagramBuilder,
     DiscreteStateIndex,
     DiscreteValues,
-    LeafSystem,
 )
 
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.plant import RobotPlant
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
 from crowdbot.core.support.compiling.compile import kernel
@@ -24,7 +24,7 @@ from crowdbot.core.types.motion import Pose
 from crowdbot.core.types.robot import HolonomicDrive, RobotState
 
 
-class RobotStateSystem(LeafSystem):
+class RobotStateSystem(Block):
     """Input: the robot's positions and velocities. Output: `ports.ROBOT_STATE`."""
 
     __slots__ = NO_ATTRIBUTES

@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
-from pydrake.systems.framework import Context, DiagramBuilder, LeafSystem, State
+from pydrake.systems.framework import Context, DiagramBuilder, State
 
 from crowdbot.core.crowd import CrowdEngine
 from crowdbot.core.crowd import state as s
@@ -24,6 +24,7 @@ from crowdbot.core.sensing.other_robots import OtherRobot
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sensing.sensor import Sensor, SensorWithMemory
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.cameras.images import Graphics, Images, capture, view_size
 from crowdbot.core.sim.control import ControlledRobot
@@ -108,7 +109,7 @@ class Timetable:
         return tuple(n for n, rate in self._rates.items() if is_due(tick, rate))
 
 
-class SensorBank(LeafSystem):
+class SensorBank(Block):
     """Inputs: robot and crowd state. Output: latest readings of all sensors.
 
     Entry 0 of the output is the next tick with a due sensor.

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import pytest
 from pydrake.systems.framework import LeafSystem, System
 
+from crowdbot.core.sim.block import Block
 from tests.paths import ROOT
 
 
@@ -49,3 +50,16 @@ def test_the_check_sees_such_a_binding() -> None:
     bound = type("Bound", (LeafSystem,), {"DoGetWitnessFunctions": LeafSystem.GetWitnessFunctions})
     if not _bound_to_drake(bound):
         pytest.fail("a bound method of the base class goes unnoticed")
+
+
+def test_every_system_is_a_block() -> None:
+    systems = [kind for kind in _drakes() if issubclass(kind, System)]
+    assert len(systems) >= 10
+    assert [kind for kind in systems if not issubclass(kind, Block)] == []
+
+
+def test_a_block_has_no_witness_functions_and_nothing_is_called_for_them() -> None:
+    block = Block()
+    assert block.GetWitnessFunctions(block.CreateDefaultContext()) == []
+    stand_in = vars(Block).get("DoGetWitnessFunctions")
+    assert stand_in is None or not hasattr(stand_in, "__code__")

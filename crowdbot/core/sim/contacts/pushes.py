@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, LeafSystem
+from pydrake.systems.framework import BasicVector, Context, DiagramBuilder
 
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.contacts.robot_contacts import RobotContacts
 from crowdbot.core.sim.control import ControlledRobot
 from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES, weak_callback
 
 
-class PushSum(LeafSystem):
+class PushSum(Block):
     """Inputs: forces of people and of robots. Output: their sum, in the control mode's layout."""
 
     __slots__ = NO_ATTRIBUTES

@@ -20,7 +20,6 @@ from pydrake.systems.framework import (
     Context,
     DiagramBuilder,
     DiscreteStateIndex,
-    LeafSystem,
     OutputPort,
     State,
 )
@@ -39,6 +38,7 @@ from crowdbot.core.crowd.contact.robot_contact import (
 )
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.build_crowd import in_series
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.contacts.bodies import SEEN, outlines_of, rows_of
@@ -104,7 +104,7 @@ def _velocity_at(row: Array, x: float, y: float) -> tuple[float, float]:
     return row[RVX] - row[R_W] * (y - row[RY]), row[RVY] + row[R_W] * (x - row[RX])
 
 
-class RobotContacts(LeafSystem):
+class RobotContacts(Block):
     """Inputs: states of all robots. Outputs: of each, force x, y and torque (`ports.ROBOT_PUSH`).
 
     The event is unrestricted, like the crowd's: both robots of a pair use one computation.

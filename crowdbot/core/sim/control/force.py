@@ -10,9 +10,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from pydrake.systems.framework import BasicVector, Context, DiagramBuilder, LeafSystem
+from pydrake.systems.framework import BasicVector, Context, DiagramBuilder
 
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.control.controlled import ControlledRobot, push_on
 from crowdbot.core.sim.plant import RobotPlant, add_plant, motor_of, place_robot
 from crowdbot.core.sim.robot_state import MeasuredRobotState, add_robot_state
@@ -24,7 +25,7 @@ from crowdbot.core.types.robot import DifferentialDrive, HolonomicDrive, RobotMo
 _GRAVITY = 9.81  # m/s^2, as in the plant
 
 
-class ForceDrive(LeafSystem):
+class ForceDrive(Block):
     """Inputs: robot state, desired v, w and vy, force of people. Output: generalised force.
 
     The output depends directly on the state: with a delay of one tick, a gain of one would

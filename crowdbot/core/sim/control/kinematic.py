@@ -15,12 +15,12 @@ from pydrake.systems.framework import (
     DiagramBuilder,
     DiscreteStateIndex,
     DiscreteValues,
-    LeafSystem,
 )
 
 from crowdbot.core.crowd.contact.robot_contact import extent_of
 from crowdbot.core.geometry.footprint import footprint_of_model
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.contacts.outline_gap import is_clear, outline_gap
 from crowdbot.core.sim.control.controlled import ControlledRobot, Push
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
@@ -38,7 +38,7 @@ _SMALL = 0.03  # rad; turns of a tick for which a short series is exact
 _UNSURE = 1e-13  # share of coordinates; larger than the rounding of distances
 
 
-class KinematicBase(LeafSystem):
+class KinematicBase(Block):
     """Input: v, w, vy. Output: `ports.ROBOT_STATE`, which is the whole state."""
 
     __slots__ = NO_ATTRIBUTES

@@ -14,13 +14,13 @@ from pydrake.systems.framework import (
     DiagramBuilder,
     DiscreteValues,
     EventStatus,
-    LeafSystem,
 )
 
 from crowdbot.core.assistance.watch import PersonWatch
 from crowdbot.core.geometry.polygon import distance_to, entry_fraction, inside
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.built_run import BuiltRun
 from crowdbot.core.sim.contacts.clearance_cache import ClearanceCache
 from crowdbot.core.sim.contacts.wall_contact import WallContacts, wall_force
@@ -41,7 +41,7 @@ _TILT = RobotState._fields.index("tilt")
 LEANS = math.radians(60.0)
 
 
-class MetricLogger(LeafSystem):
+class MetricLogger(Block):
     """Inputs: robot state, crowd state, forces. Ends its robot: arrived, toppled, out of time.
 
     With the last robot of a run the run ends.

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from pydrake.systems.framework import Context, DiagramBuilder, LeafSystem
+from pydrake.systems.framework import Context, DiagramBuilder
 
 from crowdbot.core.recording.run_log import RunLog
 from crowdbot.core.sim import ports
+from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.crowd_system import CrowdSystem
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 
 
-class PeopleLogger(LeafSystem):
+class PeopleLogger(Block):
     """Inputs: crowd state and events.
 
     Add it after the robots' monitors: blocks publish in the order of addition.

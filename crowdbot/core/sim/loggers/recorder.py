@@ -7,15 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pydrake.systems.framework import Context, DiagramBuilder, LeafSystem
+from pydrake.systems.framework import Context, DiagramBuilder
 
 from crowdbot.core.recording.writer import RecordingWriter
+from crowdbot.core.sim.block import Block
 from crowdbot.core.sim.weak_callback import NO_ATTRIBUTES
 
 _PERIOD = 1.0  # s
 
 
-class Recorder(LeafSystem):
+class Recorder(Block):
     """No ports. Chunks end by simulated time, so that equal runs give equal files."""
 
     __slots__ = NO_ATTRIBUTES
