@@ -6,8 +6,11 @@ samples, M people; world frame, SI units.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.trajectories.encounters import encounter, relative_velocity, robot_velocities
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array
@@ -44,23 +47,36 @@ def robot_approach(run: Trajectories, jump_speed: float) -> Array:
 
 def _demanded(run: Trajectories, time: float, room: float, jump_speed: float) -> Array:
     pair = encounter(run, jump_speed)
-    wx, wy = relative_velocity(run, jump_speed)
-    square = wx * wx + wy * wy
-    with np.errstate(invalid="ignore", divide="ignore"):
-        until = -(pair.px * wx + pair.py * wy) / np.maximum(square, _STILL * _STILL)
-        distance = np.hypot(pair.px, pair.py)
-        miss = np.hypot(pair.px + until * wx, pair.py + until * wy)
-        shift = np.maximum(0.0, distance - pair.gap + room - miss)
-        need = 2.0 * shift / np.maximum(until, _SOONEST) ** 2
-        counts = (until > 0.0) & (until < time) & np.isfinite(need)
-    need = np.where(counts, np.minimum(need, MOST), 0.0)
+    need = np.zeros(pair.px.shape)
+    velocity = relative_velocity(run, jump_speed)
+    _needs((pair.px, pair.py), velocity, pair.gap, pair.distance, time, room, need)
     return np.asarray((need[1:] + need[:-1]) / 2.0)
+
+
+@kernel
+def _needs(
+    at: tuple[Array, Array], velocity: tuple[Array, Array], gap: Array, distance: Array,
+    time: float, room: float, need: Array,
+) -> None:  # fmt: skip
+    """Write the acceleration that each person needs at each sample (N, M), m/s^2."""
+    (px, py), (vx, vy) = at, velocity
+    for k in range(px.shape[0]):
+        for m in range(px.shape[1]):
+            x, y, wx, wy = px[k, m], py[k, m], vx[k, m], vy[k, m]
+            square = wx * wx + wy * wy
+            until = -(x * wx + y * wy) / max(square, _STILL * _STILL)
+            if not 0.0 < until < time:  # nor for NaN
+                continue
+            shift = distance[k, m] - gap[k, m] + room - math.hypot(x + until * wx, y + until * wy)
+            if shift > 0.0:
+                needed = 2.0 * shift / max(until, _SOONEST) ** 2
+                need[k, m] = min(needed, MOST) if needed < math.inf else 0.0
 
 
 def _approach(run: Trajectories, jump_speed: float) -> Array:
     pair = encounter(run, jump_speed)
     rx, ry = robot_velocities(run, jump_speed)
-    distance = np.hypot(pair.px, pair.py)
+    distance = pair.distance
     towards = rx[:, None] * pair.px + ry[:, None] * pair.py
     known = np.isfinite(towards) & (distance > 0.0)
     speed = np.divide(towards, distance, out=np.zeros(distance.shape), where=known)

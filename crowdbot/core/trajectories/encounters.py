@@ -6,12 +6,14 @@ units. NaN means absent or unknown. Results are cached per run.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.geometry.footprint import Footprint, into_frame
+from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.trajectories.footprint_of_run import footprint_of
 from crowdbot.core.trajectories.preprocess import (
     agent_velocities,
@@ -24,6 +26,9 @@ from crowdbot.core.trajectories.preprocess import (
 from crowdbot.core.trajectories.tracks import AgentTracks, RobotTrack
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.arrays import Array, Mask
+
+#: Margin within which a comparison without roots does not decide: far more than rounding.
+_CLEARLY = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -141,6 +146,15 @@ def onsets(
 
 
 def _encounter(run: Trajectories, jump_speed: float) -> Encounter:
+    found: Encounter = run.cached("encounter", lambda: _gaps(run))
+    valid = valid_agent_steps(run.t, people(run), jump_speed)
+    return replace(
+        found, valid=valid & valid_robot_steps(run.t, robot_of(run), jump_speed)[:, None]
+    )
+
+
+def _gaps(run: Trajectories) -> Encounter:
+    """Return all but the valid steps."""
     robot, agents = robot_of(run), people(run)
     px = inf_to_nan(agents.x) - inf_to_nan(robot.x)[:, None]
     py = inf_to_nan(agents.y) - inf_to_nan(robot.y)[:, None]
@@ -151,7 +165,6 @@ def _encounter(run: Trajectories, jump_speed: float) -> Encounter:
     else:
         reach = agents.radius
         gap = footprint.gap(*into_frame(theta, px, py)) - reach
-    valid = valid_agent_steps(run.t, agents, jump_speed)
     return Encounter(
         t=run.t,
         px=px,
@@ -159,7 +172,7 @@ def _encounter(run: Trajectories, jump_speed: float) -> Encounter:
         reach=reach,
         distance=distance,
         gap=gap,
-        valid=valid & valid_robot_steps(run.t, robot, jump_speed)[:, None],
+        valid=np.zeros((0, 0), np.bool_),
         footprint=footprint,
         theta=theta,
     )
@@ -181,20 +194,40 @@ def time_to_contact(
     """
     px, py = pair.px, pair.py
     vx, vy = velocity
-    speed = np.hypot(vx, vy)
-    moves = speed > rel_speed_tol
     if pair.footprint is not None:
+        moves = np.hypot(vx, vy) > rel_speed_tol
         at, along = into_frame(pair.theta, px, py), into_frame(pair.theta, vx, vy)
         tau = pair.footprint.first_touch(*at, *along, pair.reach + contact_tol)
         tau = np.where(moves, tau, np.inf)
     else:
-        nearing = -(px * vx + py * vy)
-        miss = np.abs(px * vy - py * vx)
-        hits = moves & (nearing > 0) & (miss <= (pair.reach + contact_tol) * speed)
-        root = np.sqrt(np.maximum((pair.reach * speed) ** 2 - miss**2, 0.0))
-        gap = pair.gap * (pair.distance + pair.reach)
-        tau = np.divide(gap, nearing + root, out=np.full(px.shape, np.inf), where=hits)
+        tau = np.full(px.shape, np.inf)
+        _discs_meet(
+            (px, py), (vx, vy), pair.gap, pair.distance, pair.reach, contact_tol, rel_speed_tol, tau
+        )
     return np.where(touching(pair, contact_tol), 0.0, tau)
+
+
+@kernel
+def _discs_meet(
+    at: tuple[Array, Array], velocity: tuple[Array, Array], gap: Array, distance: Array,
+    reach: Array, contact_tol: float, rel_speed_tol: float, tau: Array,
+) -> None:  # fmt: skip
+    """Write the time until two discs touch (N, M), s, where they do."""
+    (px, py), (vx, vy) = at, velocity
+    for k in range(px.shape[0]):
+        for m in range(px.shape[1]):
+            wx, wy = vx[k, m], vy[k, m]
+            nearing = -(px[k, m] * wx + py[k, m] * wy)
+            if not nearing > 0.0:  # nor for NaN
+                continue
+            miss, most = abs(px[k, m] * wy - py[k, m] * wx), reach[m] + contact_tol
+            # Most miss clearly, which needs no root.
+            if miss * miss > most * most * (wx * wx + wy * wy) * (1.0 + _CLEARLY) + _CLEARLY:
+                continue
+            speed = math.hypot(wx, wy)
+            if speed > rel_speed_tol and miss <= most * speed:
+                root = math.sqrt(max((reach[m] * speed) ** 2 - miss**2, 0.0))
+                tau[k, m] = gap[k, m] * (distance[k, m] + reach[m]) / (nearing + root)
 
 
 def touching(pair: Encounter, contact_tol: float) -> Mask:

@@ -74,14 +74,14 @@ def _contacts(
     if run.contacts is not None:
         return _recorded(run, run.contacts, jump_speed)
     found = onsets(run, jump_speed, contact_tol, release_gap)
-    speed = np.hypot(*relative_velocity(run, jump_speed))[found.sample, found.agent]
+    vx, vy = (v[found.sample, found.agent] for v in relative_velocity(run, jump_speed))
     unknown = np.full(len(found.time), np.nan)
     return PersonContacts(
         time=found.time,
         end=_ends(run, found, jump_speed, release_gap),
         agent=found.agent,
         sample=found.sample,
-        speed=speed,
+        speed=np.hypot(vx, vy),
         closing=_closing(run, found.time, found.agent, found.sample, unknown, jump_speed),
         recorded=False,
     )

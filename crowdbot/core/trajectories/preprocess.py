@@ -136,7 +136,8 @@ def heading_changes(t: Array, robot: RobotTrack, jump_speed: float) -> Array:
 
 def inf_to_nan(values: Array) -> Array:
     """Replace infinite values by NaN: both mean unknown."""
-    return np.where(np.isfinite(values), values, np.nan)
+    infinite = np.isinf(values)
+    return np.where(infinite, np.nan, values) if infinite.any() else values
 
 
 def wrap(angle: Array) -> Array:

@@ -139,27 +139,37 @@ def _count(
         most = _place(bodies, k, at)
         _sort(order, at)
         behind = rule.level + 2.0 * most + _SLACK
-        reach = rule.lateral + behind
-        first = 0
         for place in range(size):
             a = order[place]
             if at[a] == math.inf:
                 break
-            while at[a] - at[order[first]] > reach:
-                first += 1
-            if not bodies.walks[k, a]:
-                continue
-            for other in range(first, size):
-                b = order[other]
-                if at[b] - at[a] > reach:
-                    break
-                ahead, beside = _ahead(bodies, k, a, b, 1)
-                # Test first what is nearly always false: a mispredicted branch costs more than the
-                # rest.
-                if abs(ahead) > behind or abs(beside) > rule.lateral or a == b:
-                    continue
-                if ahead < -rule.level and _same_way(bodies, rule.cosine, k, a, b):
-                    counts[a, b] += _armed(bodies, rule.level, k, a, b)
+            if bodies.walks[k, a]:
+                # In x, those behind by this much and aside by that much.
+                reach = behind * abs(bodies.ux[k, a]) + rule.lateral * abs(bodies.uy[k, a]) + _SLACK
+                for one_way in (-1, 1):
+                    other = place + one_way
+                    while 0 <= other < size and abs(at[order[other]] - at[a]) <= reach:
+                        _count_pair(bodies, rule, behind, k, a, order[other], counts)
+                        other += one_way
+
+
+@inline_kernel
+def _count_pair(
+    bodies: OvertakingBodies,
+    rule: _Rule,
+    behind: float,
+    k: int,
+    a: int,
+    b: int,
+    counts: NDArray[np.int64],
+) -> None:
+    """Count it if a overtakes b on a step; farther behind than `behind` it cannot have been."""
+    ahead, beside = _ahead(bodies, k, a, b, 1)
+    # Test first what is nearly always false: a mispredicted branch costs more than the rest.
+    if abs(ahead) > behind or abs(beside) > rule.lateral or ahead >= -rule.level:
+        return
+    if _same_way(bodies, rule.cosine, k, a, b):
+        counts[a, b] += _armed(bodies, rule.level, k, a, b)
 
 
 @kernel
