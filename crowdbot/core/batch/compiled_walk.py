@@ -189,7 +189,7 @@ def _steer(
     for i in range(position.shape[0]):
         target[i, 0], target[i, 1] = people[i].ax, people[i].ay
     steer_among_discs(
-        parts, ordered[:count], orders[2], heading, decides, velocity, relaxation, target
+        parts, ordered[:count], orders, heading, decides, velocity, relaxation, target
     )
     for i in range(position.shape[0]):
         if decides[i]:

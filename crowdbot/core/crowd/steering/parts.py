@@ -15,7 +15,7 @@ from crowdbot.core.crowd.steering.personal_space import push_all
 from crowdbot.core.crowd.steering.sorted_discs import sort_people
 from crowdbot.core.crowd.steering.time_gap import limit_all
 from crowdbot.core.crowd.steering.wall_push import LEAST, push_off_walls
-from crowdbot.core.crowd.steering.wander import E_FOLD, wander_all
+from crowdbot.core.crowd.steering.wander import E_FOLD, no_draws, wander_all
 from crowdbot.core.crowd.velocity_search.neighbour_discs import most_discs
 from crowdbot.core.crowd.velocity_search.neighbours import DISC, DiscRecord
 from crowdbot.core.geometry.segment_grid import grid_of
@@ -78,7 +78,7 @@ class SteeringParts:
             view.present if view.decides is None else view.decides, view.robot, view.pillars,
             _NO_BOX if boundary is None else np.array(boundary), view.diagonal, view.walls, *grid,
             view.t, max(relaxation, view.dt), *self._discs, self._orders, self._heading,
-            self._decides, changed,
+            self._decides, self._draws, changed,
         )  # fmt: skip
         return changed
 
@@ -89,6 +89,7 @@ class SteeringParts:
             [agents.avoided_radius, agents.preferred_speed, agents.max_acceleration]
         )
         self._largest = float(np.max(agents.avoided_radius, initial=0.0))
+        self._draws = no_draws(len(agents))
 
     def _make_room(self, people: int, room: int) -> None:
         self._discs = rows_of(room, DISC), rows_of(room, DISC)
@@ -109,7 +110,7 @@ def steer_people(
     robots: Array, pillars: Array, box: Array, diagonal: bool,
     walls: Array, frame: Array, first: Indices, cells: Indices, t: float, relaxation: float,
     unsorted: Rows[DiscRecord], discs: Rows[DiscRecord], orders: Indices, heading: Array,
-    decides: Mask, desired: Array,
+    decides: Mask, draws: Array, desired: Array,
 ) -> None:  # fmt: skip
     """Change accelerations (N, 2) by all parts, then limit them, in place, m/s^2.
 
@@ -117,16 +118,14 @@ def steer_people(
         parts: from `part_numbers`; key: as in `Steering`; ids: (N,) of people.
         traits to diagonal, unsorted to decides: as in `sort_people`.
         walls to cells: as in `push_off_walls`.
-        t: s.
+        t: s; draws: as in `wander_all`.
         relaxation: s, at least the time between decisions.
     """
     count = sort_people(
         position, velocity, goal, traits, present, members, robots, pillars, box, diagonal,
         unsorted, discs, orders, heading, decides,
     )  # fmt: skip
-    steer_among_discs(
-        parts, discs[:count], orders[2], heading, decides, velocity, relaxation, desired
-    )
+    steer_among_discs(parts, discs[:count], orders, heading, decides, velocity, relaxation, desired)
     if parts[WALLS, 0] != 0.0:
         push_off_walls(
             decides, position, traits[0], walls, frame, first, cells, parts[WALLS, 1],
@@ -134,7 +133,7 @@ def steer_people(
         )  # fmt: skip
     if parts[WANDER, 0] != 0.0:
         knots = t * E_FOLD / parts[WANDER, 2]
-        wander_all(decides, ids, knots, parts[WANDER, 1], key, desired)
+        wander_all(decides, ids, knots, parts[WANDER, 1], key, draws, desired)
     for i in range(desired.shape[0]):
         limit, size = traits[2, i], math.hypot(desired[i, 0], desired[i, 1])
         share = min(1.0, limit / max(size, limit))
@@ -144,23 +143,26 @@ def steer_people(
 
 @kernel
 def steer_among_discs(
-    parts: Array, near: Rows[DiscRecord], row: Indices, heading: Array, decides: Mask,
+    parts: Array, near: Rows[DiscRecord], orders: Indices, heading: Array, decides: Mask,
     velocity: Array, relaxation: float, desired: Array,
 ) -> None:  # fmt: skip
     """Change accelerations (N, 2) by time gap, personal space and lanes, in place, m/s^2.
 
     Args:
         parts: from `part_numbers`.
-        near, row, heading, decides: sorted discs and what `sort_people` writes.
+        near, orders, heading, decides: sorted discs and what `sort_people` writes; but for its last
+            row, ``orders`` is scratch.
         velocity, relaxation, desired: as in `steer_people`.
     """
-    gap, space, lanes = parts[GAP], parts[SPACE], parts[LANES]
+    gap, space, lanes, row = parts[GAP], parts[SPACE], parts[LANES], orders[2]
     if gap[0] != 0.0:
         limit_all(
             near, row, heading, decides, velocity, gap[1], gap[2], gap[3], gap[4], relaxation,
-            desired,
+            orders[0], desired,
         )  # fmt: skip
     if space[0] != 0.0:
-        push_all(near, heading, decides, space[1], space[2], space[3], space[4], desired)
+        push_all(near, heading, decides, space[1], space[2], space[3], space[4], orders[0], desired)
     if lanes[0] != 0.0:
-        keep_all(near, row, heading, decides, lanes[1], lanes[2], lanes[3], lanes[4], desired)
+        keep_all(
+            near, row, heading, decides, lanes[1], lanes[2], lanes[3], lanes[4], orders[0], desired
+        )

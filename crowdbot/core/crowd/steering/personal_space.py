@@ -8,18 +8,21 @@ from crowdbot.core.crowd.steering.sorted_discs import REACH
 from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
 from crowdbot.core.support.compiling.compile import inline_kernel, kernel
 from crowdbot.core.support.records import Rows
-from crowdbot.core.types.arrays import Array, Mask
+from crowdbot.core.types.arrays import Array, Indices, Mask
 
 #: Largest push by one other, m/s^2.
 HARDEST = 8.0
 #: A person who would be inside another counts as at this share of the present distance.
 _THROUGH = 0.05
+#: Factor by which a distance is clearly larger, whatever the rounding.
+_CLEARLY = 1.0 + 1e-9
 
 
 @kernel
 def push_all(
     discs: Rows[DiscRecord], heading: Array, decides: Mask,
-    strength: float, reach: float, anticipation: float, behind: float, desired: Array,
+    strength: float, reach: float, anticipation: float, behind: float, listed: Indices,
+    desired: Array,
 ) -> None:  # fmt: skip
     """Add the pushes of all others on people who decide to accelerations (N, 2), in place.
 
@@ -29,37 +32,56 @@ def push_all(
     Args:
         discs, heading, decides: as in `sorted_discs.sort_people`.
         strength to behind: see `PersonalSpaceSpec`.
+        listed: (>= D,) scratch.
         desired: m/s^2.
     """
     farthest = 4.6 * reach  # where the push is 1 % of the strength
     for a in range(discs.shape[0]):
         i = _who_decides(discs, a, decides)
-        for b in range(a + 1, discs.shape[0]):
-            dx, dy = discs[b].x - discs[a].x, discs[b].y - discs[a].y
-            reaches_a, reaches_b = dx <= REACH, discs[a].x >= discs[b].x - REACH
-            if not (reaches_a or reaches_b):
-                break
-            if abs(dy) > REACH:
-                continue
+        for place in range(_list_near(discs, a, anticipation, farthest, listed)):
+            b = listed[place]
             j = _who_decides(discs, b, decides)
             if i < 0 and j < 0:
                 continue
+            dx, dy = discs[b].x - discs[a].x, discs[b].y - discs[a].y
             nx, ny, distance = _towards(discs, a, b, dx, dy, anticipation)
             gap = distance - discs[a].radius - discs[b].radius
             other_gap = distance - discs[b].radius - discs[a].radius  # may be rounded otherwise
             if not gap <= farthest and not other_gap <= farthest:
                 continue
             push = strength * math.exp(-gap / reach)
-            if i >= 0 and reaches_a and gap <= farthest:
+            if i >= 0 and dx <= REACH and gap <= farthest:
                 size = _felt(push, nx, ny, heading[i], behind)
                 desired[i, 0] += -size * nx
                 desired[i, 1] += -size * ny
-            if j >= 0 and reaches_b and other_gap <= farthest:
+            if j >= 0 and discs[a].x >= discs[b].x - REACH and other_gap <= farthest:
                 if other_gap != gap:
                     push = strength * math.exp(-other_gap / reach)
                 size = _felt(push, -nx, -ny, heading[j], behind)
                 desired[j, 0] += size * nx
                 desired[j, 1] += size * ny
+
+
+@inline_kernel
+def _list_near(
+    discs: Rows[DiscRecord], a: int, anticipation: float, farthest: float, listed: Indices
+) -> int:
+    """Write the rows after a, except those that clearly do not push it, and return their number.
+
+    Without roots and divisions, and without branches, which would often be mispredicted.
+    """
+    x, y, vx, vy = discs[a].x, discs[a].y, discs[a].vx, discs[a].vy
+    count = 0
+    for b in range(a + 1, discs.shape[0]):
+        dx, dy = discs[b].x - x, discs[b].y - y
+        if not (dx <= REACH or x >= discs[b].x - REACH):
+            break
+        qx, qy = dx + (discs[b].vx - vx) * anticipation, dy + (discs[b].vy - vy) * anticipation
+        limit = (farthest + discs[a].radius + discs[b].radius) * _CLEARLY
+        far = (qx * dx + qy * dy >= 0.0) & (qx * qx + qy * qy > limit * limit)
+        listed[count] = b
+        count += int((abs(dy) <= REACH) & (not far))
+    return count
 
 
 @inline_kernel

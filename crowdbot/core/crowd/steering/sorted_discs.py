@@ -6,7 +6,7 @@ import math
 
 from crowdbot.core.crowd.velocity_search.neighbour_discs import write_discs
 from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
-from crowdbot.core.support.compiling.compile import kernel
+from crowdbot.core.support.compiling.compile import inline_kernel, kernel
 from crowdbot.core.support.records import Rows
 from crowdbot.core.support.stable_order import write_stable_order
 from crowdbot.core.types.arrays import Array, Indices, Mask
@@ -15,6 +15,8 @@ from crowdbot.core.types.arrays import Array, Indices, Mask
 REACH = 3.0
 #: Slower people face their goal rather than their motion, m/s.
 _SLOW = 0.3
+#: Added to distances so that rounding leaves out no disc, m.
+_SLACK = 1e-6
 
 
 @kernel
@@ -71,8 +73,41 @@ def face(position: Array, velocity: Array, goal: Array, heading: Array) -> None:
             heading[i, 0], heading[i, 1] = x / size, y / size
 
 
-@kernel
-def first_within(discs: Rows[DiscRecord], a: int, reach: float) -> int:
+@inline_kernel
+def list_ahead(
+    discs: Rows[DiscRecord], a: int, hx: float, hy: float, half_width: float, listed: Indices
+) -> int:
+    """Write the rows of the discs in a strip ahead of row a, and return their number.
+
+    Without branches, which would often be mispredicted.
+
+    Args:
+        discs: (D,) sorted by x.
+        hx, hy: unit vector of the strip, which is `REACH` long.
+        half_width: m.
+        listed: (>= D,) output.
+    """
+    back, forth = _reach_ahead(hx, hy, half_width)
+    x, y, count = discs[a].x, discs[a].y, 0
+    for b in range(_first_within(discs, a, back), discs.shape[0]):
+        dx, dy = discs[b].x - x, discs[b].y - y
+        if dx > forth:
+            break
+        along, aside = dx * hx + dy * hy, abs(dx * hy - dy * hx)
+        listed[count] = b
+        count += int((b != a) & (along > 0.0) & (along <= REACH) & (aside < half_width))
+    return count
+
+
+@inline_kernel
+def _reach_ahead(hx: float, hy: float, half_width: float) -> tuple[float, float]:
+    """Return how far in -x and x a strip ahead reaches, m, at most `REACH`."""
+    aside = half_width * abs(hy) + _SLACK
+    return min(REACH, max(0.0, -REACH * hx) + aside), min(REACH, max(0.0, REACH * hx) + aside)
+
+
+@inline_kernel
+def _first_within(discs: Rows[DiscRecord], a: int, reach: float) -> int:
     """Return the first row whose x is within ``reach`` (m) of row a."""
     low = discs[a].x - reach
     while a > 0 and discs[a - 1].x >= low:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from crowdbot.core.crowd.steering.sorted_discs import REACH, first_within
+from crowdbot.core.crowd.steering.sorted_discs import list_ahead
 from crowdbot.core.crowd.velocity_search.neighbours import DiscRecord
 from crowdbot.core.support.compiling.compile import kernel
 from crowdbot.core.support.records import Rows
@@ -22,7 +22,7 @@ _ONCOMING = 0.2
 def limit_all(
     discs: Rows[DiscRecord], row: Indices, heading: Array, decides: Mask, velocity: Array,
     time: float, oncoming_time: float, room: float, half_width: float, relaxation: float,
-    desired: Array,
+    listed: Indices, desired: Array,
 ) -> None:  # fmt: skip
     """Reduce accelerations so that speeds after the relaxation time leave the time gap, in place.
 
@@ -30,6 +30,7 @@ def limit_all(
         discs to decides: as in `sorted_discs.sort_people`; velocity: (N, 2), m/s.
         time to half_width: see `TimeGapSpec`.
         relaxation: time in which people reach the velocity that they have chosen, s.
+        listed: (>= D,) scratch.
         desired: (N, 2) accelerations, m/s^2.
     """
     for i in range(desired.shape[0]):
@@ -41,8 +42,9 @@ def limit_all(
         if ahead <= 0.0:
             continue  # about to stop or step back
         fastest = allowed_speed(
-            discs, int(row[i]), heading[i, 0], heading[i, 1], time, oncoming_time, room, half_width
-        )
+            discs, int(row[i]), heading[i, 0], heading[i, 1], time, oncoming_time, room, half_width,
+            listed,
+        )  # fmt: skip
         if ahead > fastest:
             desired[i, 0] -= (ahead - fastest) / relaxation * heading[i, 0]
             desired[i, 1] -= (ahead - fastest) / relaxation * heading[i, 1]
@@ -58,6 +60,7 @@ def allowed_speed(
     oncoming_time: float,
     room: float,
     half_width: float,
+    listed: Indices,
 ) -> float:
     """Return the largest speed that the discs ahead of row a allow, m/s; inf if free.
 
@@ -67,13 +70,9 @@ def allowed_speed(
         time to half_width: see `TimeGap`.
     """
     fastest = math.inf
-    for b in range(first_within(discs, a, REACH), discs.shape[0]):
-        dx, dy = discs[b].x - discs[a].x, discs[b].y - discs[a].y
-        if dx > REACH:
-            break
-        along = dx * hx + dy * hy
-        if b == a or along <= 0.0 or along > REACH or abs(dx * hy - dy * hx) >= half_width:
-            continue
+    for place in range(list_ahead(discs, a, hx, hy, half_width, listed)):
+        b = listed[place]
+        along = (discs[b].x - discs[a].x) * hx + (discs[b].y - discs[a].y) * hy
         comes = discs[b].vx * hx + discs[b].vy * hy < -_ONCOMING
         fastest = min(fastest, max(0.0, (along - room) / (oncoming_time if comes else time)))
     return fastest

@@ -14,7 +14,7 @@ from crowdbot.core.crowd import Agents, CrowdEngine, CrowdView, CrowdWorld, poli
 from crowdbot.core.crowd import state as s
 from crowdbot.core.crowd.steering.parameters import Steering
 from crowdbot.core.crowd.steering.parts import SteeringParts
-from crowdbot.core.crowd.steering.wander import E_FOLD, wandering
+from crowdbot.core.crowd.steering.wander import E_FOLD, no_draws, wandering
 from crowdbot.core.types.arrays import Array
 from crowdbot.dsl.scenario.steering import (
     LanesSpec,
@@ -186,12 +186,21 @@ def test_avoided_radius_is_what_parts_keep_clear_of() -> None:
 
 def test_wander_has_its_deviation_and_its_time() -> None:
     knots = np.arange(0.0, 60.0, 0.05)
-    found = np.array([[wandering(i, k, np.uint64(7)) for k in knots] for i in range(40)])
+    found = np.array(
+        [[wandering(i, k, np.uint64(7), no_draws(1)[0]) for k in knots] for i in range(40)]
+    )
     assert found.mean() == pytest.approx(0.0, abs=0.05)
     assert found.std() == pytest.approx(1.0, abs=0.05)
     lag = round(E_FOLD / 0.05)
     same = np.mean(found[:, :-lag] * found[:, lag:])
     assert same == pytest.approx(math.exp(-1.0), abs=0.06)
+
+
+def test_the_memory_of_draws_changes_no_number() -> None:
+    kept, key = no_draws(1)[0], np.uint64(7)
+    for knots in (0.0, 0.3, 1.1, 0.2, 7.9, 8.0, 8.9, 9.0, 2.5):
+        fresh = wandering(3, knots, key, no_draws(1)[0])
+        assert wandering(3, knots, key, kept) == fresh
 
 
 def test_wander_is_of_person_and_key_only() -> None:
