@@ -10,6 +10,7 @@ from crowdbot.core.crowd.velocity_search.collision_rows import (
     HEADER,
     SAFE,
     SEGMENT_ROW,
+    DiscRow,
     SegmentRow,
 )
 from crowdbot.core.crowd.velocity_search.collision_walls import (
@@ -86,40 +87,50 @@ def list_approaching(
     own, header = as_record(params, COST_PARAMS), as_record(work, HEADER)
     rows = as_rows(work, DISC_ROW)
     range_, surface, touched, discs = own.range, own.from_surface, 0, 0
-    most, later = horizon if agent.parity == 0.0 else math.inf, math.inf
+    most = horizon if agent.parity == 0.0 else math.inf
     for j in range(near_count):
         d2, reach = near[j].d2, near[j].reach
-        limit = range_ + surface * reach
-        if d2 >= limit * limit:
-            continue
-        gap2 = d2 - reach * reach
-        if gap2 <= 0.0:
-            touched += 1
-            continue
-        vx, vy, distance = near[j].nvx, near[j].nvy, math.sqrt(d2)
+        limit, gap2, distance = range_ + surface * reach, d2 - reach * reach, math.sqrt(d2)
         # The distance decreases at most at this speed; the factor covers rounding.
-        closing = spread + ((ux - vx) * near[j].rx + (uy - vy) * near[j].ry) / distance
+        x, y = near[j].rx, near[j].ry
+        closing = spread + ((ux - near[j].nvx) * x + (uy - near[j].nvy) * y) / distance
         earliest = SAFE * (distance - reach) / closing if closing > 0.0 else math.inf
-        if earliest > most:
-            continue
-        discs += 1
-        row = discs
-        if row > _SORTED:
-            later = min(later, max(earliest, rows[_SORTED].earliest))
-            if rows[_SORTED].earliest > earliest:  # that one goes to the end
-                rows[row] = rows[_SORTED]
-                row = _SORTED
-        while 1 < row <= _SORTED and rows[row - 1].earliest > earliest:
-            rows[row] = rows[row - 1]
-            row -= 1
-        disc = rows[row]
-        disc.x, disc.y, disc.vx, disc.vy = near[j].rx, near[j].ry, vx, vy
-        disc.gap2, disc.earliest = gap2, earliest
+        # Written always and kept if it counts: a branch would often be mispredicted.
+        rows[discs + 1].earliest, rows[discs + 1].gap2 = earliest, j
+        within = d2 < limit * limit
+        touched += int(within & (gap2 <= 0.0))
+        discs += int(within & (gap2 > 0.0) & (not earliest > most))
+    header.later = _sort_first(rows, discs)
+    for row in range(1, discs + 1):
+        disc, other = rows[row], near[int(rows[row].gap2)]
+        disc.x, disc.y, disc.vx, disc.vy = other.rx, other.ry, other.nvx, other.nvy
+        disc.gap2 = other.d2 - other.reach * other.reach
     limit, fastest = range_ + surface * agent.radius, spread + math.hypot(ux, uy)
     count, touching = list_segments(discs, agent, walls, wall_count, limit, fastest, most, work)
     header.discs, header.segments, header.touched = discs, count, touched + touching
-    header.later = later
     return discs + count + int(header.unlisted > 0.0)
+
+
+@array_kernel
+def _sort_first(rows: Rows[DiscRow], discs: int) -> float:
+    """Sort the first of the discs by time, moving ``earliest`` and ``gap2`` only.
+
+    Returns:
+        the least ``earliest`` of the discs after those, s.
+    """
+    later = math.inf
+    for k in range(2, discs + 1):
+        earliest, index, row = rows[k].earliest, rows[k].gap2, k
+        if row > _SORTED:
+            later = min(later, max(earliest, rows[_SORTED].earliest))
+            if rows[_SORTED].earliest > earliest:  # that one goes to the end
+                rows[row].earliest, rows[row].gap2 = rows[_SORTED].earliest, rows[_SORTED].gap2
+                row = _SORTED
+        while 1 < row <= _SORTED and rows[row - 1].earliest > earliest:
+            rows[row].earliest, rows[row].gap2 = rows[row - 1].earliest, rows[row - 1].gap2
+            row -= 1
+        rows[row].earliest, rows[row].gap2 = earliest, index
+    return later
 
 
 @array_kernel
