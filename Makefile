@@ -76,7 +76,7 @@ kernels: setup
 lint: style types
 
 types: setup
-	$(BIN)/mypy
+	$(BIN)/python scripts/check_types.py
 
 style: setup
 	$(BIN)/ruff check .
