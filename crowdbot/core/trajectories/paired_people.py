@@ -23,7 +23,7 @@ from crowdbot.core.trajectories.path_overlay import follow, longest_parts
 from crowdbot.core.trajectories.preprocess import inf_to_nan, valid_agent_steps
 from crowdbot.core.trajectories.trajectories import Trajectories, cached_beside
 from crowdbot.core.trajectories.trips import trip_samples
-from crowdbot.core.types.arrays import Array
+from crowdbot.core.types.arrays import Array, Mask
 
 #: Number of samples before and after the last match in which a person is searched.
 WINDOW = 48
@@ -138,10 +138,11 @@ def _whole_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> 
 
 def _meeting_effects(run: Trajectories, alone: Trajectories, pairing: Pairing) -> Effects:
     distance = encounter(run, pairing.jump_speed).distance
+    near = np.ascontiguousarray((distance <= pairing.reach + _TOLERANCE).T)
     rows, met, left_out = [], set[int](), 0
     for pair in _pairs(run, alone, pairing.jump_speed):
         one = pair.one
-        first, last = _meeting(distance[one.rows, one.column], run.t[one.rows], pairing)
+        first, last = _meeting(near[one.column, one.rows], run.t[one.rows], pairing)
         if pair.person in met or first < 0:
             continue
         met.add(pair.person)
@@ -182,9 +183,13 @@ def _walks_otherwise(pair: _Pair, sample: int, pairing: Pairing) -> bool:
     return bool(moved or abs(late[sample]) > SAME_PACE + _TOLERANCE)
 
 
-def _meeting(distance: Array, t: Array, pairing: Pairing) -> tuple[int, int]:
-    """Return first and last sample (of a trip) of the first meeting; -1, -1 if there is none."""
-    near = np.flatnonzero(distance <= pairing.reach + _TOLERANCE)
+def _meeting(within: Mask, t: Array, pairing: Pairing) -> tuple[int, int]:
+    """Return first and last sample (of a trip) of the first meeting; -1, -1 if there is none.
+
+    Args:
+        within: (K,) samples at which the person is within reach; t: (K,), s.
+    """
+    near = within.nonzero()[0]
     if not len(near):
         return -1, -1
     ends = np.flatnonzero(np.diff(t[near]) > pairing.after + _TOLERANCE)

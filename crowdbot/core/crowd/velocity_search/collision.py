@@ -88,18 +88,22 @@ def list_approaching(
     rows = as_rows(work, DISC_ROW)
     range_, surface, touched, discs = own.range, own.from_surface, 0, 0
     most = horizon if agent.parity == 0.0 else math.inf
+    every = most == math.inf
     for j in range(near_count):
         d2, reach = near[j].d2, near[j].reach
         limit, gap2, distance = range_ + surface * reach, d2 - reach * reach, math.sqrt(d2)
         # The distance decreases at most at this speed; the factor covers rounding.
         x, y = near[j].rx, near[j].ry
         closing = spread + ((ux - near[j].nvx) * x + (uy - near[j].nvy) * y) / distance
-        earliest = SAFE * (distance - reach) / closing if closing > 0.0 else math.inf
-        # Written always and kept if it counts: a branch would often be mispredicted.
+        earliest, closes = SAFE * (distance - reach) / closing, closing > 0.0
+        # Computed and written always, and kept if it counts: branches would be mispredicted.
         rows[discs + 1].earliest, rows[discs + 1].gap2 = earliest, j
+        if every and not closes:
+            rows[discs + 1].earliest = math.inf
         within = d2 < limit * limit
         touched += int(within & (gap2 <= 0.0))
-        discs += int(within & (gap2 > 0.0) & (not earliest > most))
+        counts = every | (closes & (not earliest > most))
+        discs += int(within & (gap2 > 0.0) & counts)
     header.later = _sort_first(rows, discs)
     for row in range(1, discs + 1):
         disc, other = rows[row], near[int(rows[row].gap2)]
