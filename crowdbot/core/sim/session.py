@@ -269,7 +269,7 @@ class Session:
 
     @property
     def status(self) -> str:
-        """Return ``running``, finally ``arrived``, ``timeout``, ``toppled`` or ``interrupted``."""
+        """Return ``running``, finally the word of the run's ending, such as ``arrived``."""
         return "running" if self._outcome is None else self._outcome.status
 
     @property

@@ -16,6 +16,7 @@ class Ending(StrEnum):
         past: what such runs did, to follow their number.
         sentence: one such run in a line; ``{t}`` is when it ended, s.
         colour: in pages, as CSS.
+        happened: what decided such a run, as a clause; empty: `crowdbot why` searches for it.
         failed: statistics rank such a run below all others, commands end with exit code 3, and
             ``campaign --retry-failed`` repeats it.
         complete: a ``run.json`` may have this status; one of a scenario without a robot has
@@ -25,6 +26,7 @@ class Ending(StrEnum):
     past: str
     sentence: str
     colour: str
+    happened: str
     failed: bool
     complete: bool
 
@@ -34,13 +36,14 @@ class Ending(StrEnum):
         past: str = "",
         sentence: str = "",
         colour: str = "",
+        happened: str = "",
         failed: bool = False,
         complete: bool = True,
     ) -> Ending:
         self = str.__new__(cls, word)
         self._value_ = word
         self.past, self.sentence, self.colour = past, sentence, colour
-        self.failed, self.complete = failed, complete
+        self.happened, self.failed, self.complete = happened, failed, complete
         return self
 
     ARRIVED = (
@@ -52,22 +55,22 @@ class Ending(StrEnum):
     )  # fmt: skip
     TOPPLED = (
         "toppled", "ended because the robot toppled", "toppled at {t:.1f} s",
-        "light-dark(#8a4fa3, #c690de)",
+        "light-dark(#8a4fa3, #c690de)", "the robot toppled",
     )  # fmt: skip
     PLANNER_FAILED = (
         "planner_failed", "ended because the planner failed", "planner failed at {t:.1f} s",
-        "light-dark(#b3261e, #ff7a6e)", True,
+        "light-dark(#b3261e, #ff7a6e)", "the planner failed", True,
     )  # fmt: skip
     PEOPLE_ALONE = (
         "people_alone", "showed people alone", "people walked alone for {t:.1f} s",
-        "light-dark(#3a6ea5, #7db4e6)", False, False,
+        "light-dark(#3a6ea5, #7db4e6)", "", False, False,
     )  # fmt: skip
     INTERRUPTED = (
         "interrupted", "were interrupted", "interrupted at {t:.1f} s",
-        "light-dark(#62676e, #a0a7af)", False, False,
+        "light-dark(#62676e, #a0a7af)", "", False, False,
     )  # fmt: skip
     NO_RUN = (
-        "failed", "could not be made", "could not be made", "light-dark(#22262b, #e8e6e1)",
+        "failed", "could not be made", "could not be made", "light-dark(#22262b, #e8e6e1)", "",
         True, False,
     )  # fmt: skip
 

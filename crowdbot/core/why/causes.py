@@ -1,15 +1,17 @@
-"""Causes: one table of events that can decide a run, in the order in which they are tested."""
+"""Causes: one table of events that can decide a run, in the order in which they are tested.
+
+Before them come the endings that say themselves what decided a run: `Ending.happened`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from enum import StrEnum
 
-from crowdbot.core.types.ending import Ending
+from crowdbot.core.types.ending import COMPLETE, Ending
 
 
 class Cause(StrEnum):
-    """A cause that can decide a run; the first that applies counts.
+    """A cause that can decide a run whose ending does not say it; the first that applies counts.
 
     Attributes:
         past: what such runs did, to follow their number.
@@ -25,8 +27,6 @@ class Cause(StrEnum):
         self.past, self.happened = past, happened
         return self
 
-    PLANNER = "planner", "ended because the planner failed", "the planner failed"
-    TOPPLED = "toppled", "toppled", "the robot toppled"
     RAN_INTO = "ran_into_person", "ran into a person, at fault", "the robot ran into a person"
     WALL = "touched_wall", "touched a wall", "the robot touched a wall"
     BLOCKED = (
@@ -44,8 +44,5 @@ class Cause(StrEnum):
     ALONE = "met_no_one", "arrived and met no one", "the robot met no one"
 
 
-#: Endings that say themselves what decided a run; other runs are searched for their cause.
-CAUSES_OF_ENDINGS: Mapping[Ending, Cause] = {
-    Ending.PLANNER_FAILED: Cause.PLANNER,
-    Ending.TOPPLED: Cause.TOPPLED,
-}
+#: Everything that can decide a run, the worst first.
+DECIDING: tuple[Ending | Cause, ...] = (*(e for e in reversed(COMPLETE) if e.happened), *Cause)

@@ -16,7 +16,7 @@ from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.trajectories.worst_moment import CONTACT_TOL, JUMP_SPEED, RELEASE_GAP, RULE
 from crowdbot.core.types.arrays import Array, Mask
 from crowdbot.core.types.ending import Ending
-from crowdbot.core.why.causes import CAUSES_OF_ENDINGS, Cause
+from crowdbot.core.why.causes import Cause
 
 #: Defaults of the metric ``safe_efficiency``; J/kg, s, m.
 ASIDE = {"push": 0.25, "headway": 0.5, "reach": 2.0}
@@ -33,13 +33,13 @@ class DecisiveMoment:
     """The moment at which a run was decided.
 
     Attributes:
-        cause: what it was.
+        cause: what it was: the ending itself, if that says it.
         t: when, on the run's clock, s.
         agent: column of the person who was involved; None: no person.
         stood: how long the robot stood from then on, s, where that is the cause.
     """
 
-    cause: Cause
+    cause: Ending | Cause
     t: float
     agent: int | None = None
     stood: float = 0.0
@@ -55,11 +55,10 @@ def decisive_moment(run: Trajectories, ended: EndedPart) -> DecisiveMoment:
     run = truncate_at_arrival(run)
     contacts = person_contacts(run, JUMP_SPEED, CONTACT_TOL, RELEASE_GAP)
     last = float(run.t[-1])
-    known = CAUSES_OF_ENDINGS.get(ended.status)
-    if known is not None:
+    if ended.status.happened:
         t = last if ended.toppled_time is None else ended.toppled_time
-        agent = None if known == Cause.PLANNER else _last_touch(contacts, t)
-        return DecisiveMoment(cause=known, t=t, agent=agent)
+        agent = None if ended.status.failed else _last_touch(contacts, t)
+        return DecisiveMoment(cause=ended.status, t=t, agent=agent)
     return (
         _first(contacts, at_fault(run, contacts, RULE, JUMP_SPEED), Cause.RAN_INTO)
         or _wall(run)

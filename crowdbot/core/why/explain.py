@@ -13,7 +13,7 @@ from crowdbot.core.runs.record_parts import EndedPart
 from crowdbot.core.runs.run_record import RunRecord
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.types.ending import Ending
-from crowdbot.core.why.causes import Cause
+from crowdbot.core.why.causes import DECIDING, Cause
 from crowdbot.core.why.decisive_moment import DecisiveMoment, decisive_moment
 from crowdbot.core.why.sentences import what_happened, what_was_seen, why_late
 from crowdbot.errors import InputError, UnknownNameError
@@ -124,7 +124,7 @@ class CauseCount:
     """
 
     planner: str
-    cause: Cause
+    cause: Ending | Cause
     count: int
     runs: int
     example: Explanation
@@ -141,7 +141,7 @@ def common_causes(directories: Iterable[Path]) -> tuple[list[CauseCount], list[s
     Returns:
         The counts, and why some runs have no explanation.
     """
-    found: dict[tuple[str, Cause], list[Explanation]] = {}
+    found: dict[tuple[str, Ending | Cause], list[Explanation]] = {}
     left_out: list[str] = []
     for one in _each(directories, left_out):
         found.setdefault((one.record.planner.label, one.moment.cause), []).append(one)
@@ -155,8 +155,7 @@ def common_causes(directories: Iterable[Path]) -> tuple[list[CauseCount], list[s
         )
         for (planner, cause), some in found.items()
     ]  # fmt: skip
-    order = list(Cause)
-    counts.sort(key=lambda c: (c.planner, -c.count, order.index(c.cause)))
+    counts.sort(key=lambda c: (c.planner, -c.count, DECIDING.index(c.cause)))
     return counts, left_out
 
 

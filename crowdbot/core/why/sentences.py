@@ -14,6 +14,7 @@ from crowdbot.core.support.text import plural
 from crowdbot.core.trajectories.encounters import encounter, people, robot_of
 from crowdbot.core.trajectories.trajectories import Trajectories
 from crowdbot.core.trajectories.worst_moment import JUMP_SPEED
+from crowdbot.core.types.ending import Ending
 from crowdbot.core.why.causes import Cause
 from crowdbot.core.why.decisive_moment import DecisiveMoment, late_moment
 
@@ -35,7 +36,7 @@ def what_happened(run: Trajectories, moment: DecisiveMoment, reason: str = "") -
     """
     sample = max(0, int(np.searchsorted(run.t, moment.t, side="right")) - 1)
     happened = moment.cause.happened.format(stood=moment.stood)
-    if moment.cause == Cause.PLANNER and reason:
+    if moment.cause == Ending.PLANNER_FAILED and reason:
         happened += f": {_PLANNER.sub('', reason)}"
     return [f"{moment.t:.1f} s: {happened}", *_person(run, moment, sample), _robot(run, sample)]
 

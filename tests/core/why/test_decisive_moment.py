@@ -12,8 +12,8 @@ import pytest
 from crowdbot.core.runs.record_parts import EndedPart
 from crowdbot.core.trajectories.fault.driven_aside import driven_aside
 from crowdbot.core.trajectories.trajectories import Trajectories
-from crowdbot.core.types.ending import COMPLETE, Ending
-from crowdbot.core.why.causes import CAUSES_OF_ENDINGS, Cause
+from crowdbot.core.types.ending import Ending
+from crowdbot.core.why.causes import DECIDING, Cause
 from crowdbot.core.why.decisive_moment import ASIDE, DecisiveMoment, decisive_moment
 from crowdbot.core.why.sentences import what_happened, why_late
 from crowdbot.core.why.strip import BEFORE, strip
@@ -60,25 +60,33 @@ CASES = {
     Cause.CLOSE: (drive(1.0, line(T, (5, 2), (0, 0))), ended("arrived", goal_time=10.0), 0),
     Cause.ASIDE: (drive(1.0, jump_aside()), ended("arrived", goal_time=10.0), 0),
     Cause.ALONE: (drive(1.0), ended("arrived", goal_time=10.0), None),
-    Cause.TOPPLED: (drive(0.5, AHEAD), ended("toppled", toppled_time=5.5), 0),
-    Cause.PLANNER: (drive(0.5, line(T, (3, 3), (0, 0))), ended("planner_failed"), None),
+    Ending.TOPPLED: (drive(0.5, AHEAD), ended("toppled", toppled_time=5.5), 0),
+    Ending.PLANNER_FAILED: (drive(0.5, line(T, (3, 3), (0, 0))), ended("planner_failed"), None),
 }
 
 
-def moment(cause: Cause) -> DecisiveMoment:
+def moment(cause: Ending | Cause) -> DecisiveMoment:
     run, how, _ = CASES[cause]
     return decisive_moment(run, how)
 
 
-@pytest.mark.parametrize("cause", Cause)
-def test_each_cause_is_found_with_the_person_involved(cause: Cause) -> None:
+@pytest.mark.parametrize("cause", CASES)
+def test_each_cause_is_found_with_the_person_involved(cause: Ending | Cause) -> None:
     found = moment(cause)
     assert (found.cause, found.agent) == (cause, CASES[cause][2])
 
 
-def test_each_ending_has_a_cause_or_is_searched_for_one() -> None:
-    searched = {Ending.ARRIVED, Ending.TIMEOUT}
-    assert set(CAUSES_OF_ENDINGS) == set(COMPLETE) - searched
+def test_each_cause_has_a_case_and_a_word_of_its_own() -> None:
+    assert set(Cause) <= set(CASES)
+    assert len(set(map(str, DECIDING))) == len(DECIDING)
+
+
+@pytest.mark.parametrize("ending", [e for e in DECIDING if isinstance(e, Ending)])
+def test_an_ending_that_says_what_happened_is_the_cause(ending: Ending) -> None:
+    run = drive(0.5, line(T, (3, 3), (0, 0)))
+    found = decisive_moment(run, ended(ending))
+    assert (found.cause, found.t) == (ending, float(run.t[-1]))
+    assert what_happened(run, found)[0] == f"10.0 s: {ending.happened}"
 
 
 def test_the_moment_is_when_it_began() -> None:
@@ -86,7 +94,7 @@ def test_the_moment_is_when_it_began() -> None:
     assert moment(Cause.WALL).t == 4.0
     assert moment(Cause.BLOCKED).t == 0.0
     assert moment(Cause.BLOCKED).stood == pytest.approx(10.0, abs=0.1)
-    assert moment(Cause.TOPPLED).t == 5.5
+    assert moment(Ending.TOPPLED).t == 5.5
     assert moment(Cause.CLOSE).t == pytest.approx(5.0, abs=0.07)
 
 
@@ -106,8 +114,8 @@ def test_why_time_was_up_is_told_after_a_contact() -> None:
     assert why_late(CASES[Cause.SLOW][0]) == "it moved until time was up"
 
 
-@pytest.mark.parametrize("cause", Cause)
-def test_words_and_pictures_of_each(cause: Cause) -> None:
+@pytest.mark.parametrize("cause", CASES)
+def test_words_and_pictures_of_each(cause: Ending | Cause) -> None:
     run, found = CASES[cause][0], moment(cause)
     values = what_happened(run, found)
     assert values[0].startswith(f"{found.t:.1f} s: ")
