@@ -79,12 +79,14 @@ class Registry:
         """Return why a plugin's components are missing; empty if unknown.
 
         Args:
-            name: a plugin, or a kind or suite of a plugin.
+            name: a plugin, or a kind or suite of a plugin; of crowdbot's own kinds without a dot.
         """
         plugin = name.replace(":", ".").partition(".")[0]
         for p in self.plugins:
             if p.name == plugin and p.failure and plugin != BUILTIN:
                 return f"plugin '{plugin}' ({p.distribution}) failed: {p.failure}"
+            if p.name == BUILTIN and p.failure and plugin == name:
+                return f"some of crowdbot's own components cannot be loaded: {p.failure}"
         for p in self.excluded:
             if p.name == plugin:
                 why = f"{ALLOW}={','.join(self.allowed)}" if self.allowed else "--no-plugins"

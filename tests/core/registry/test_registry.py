@@ -222,3 +222,10 @@ def test_without_any_robot_the_message_names_the_broken_plugin() -> None:
     registry = assemble([Plugin(name="x", distribution="x 1", error="ImportError: no y")])
     with pytest.raises(PluginError, match=r"no .* is installed.*x \(ImportError: no y\)"):
         _ = registry.scenario_model
+
+
+def test_a_kind_of_ours_that_cannot_be_loaded_says_why() -> None:
+    broken = Plugin(name="builtin", distribution="crowdbot 1", error="metric: it has no card")
+    registry = assemble([broken])
+    with pytest.raises(UnknownNameError, match=r"cannot be loaded: metric: it has no card"):
+        registry.find("metric", "success")
