@@ -38,6 +38,9 @@ class OfRecord(Generic[T]):
 class RunRow:
     """One complete run: a view of its record.
 
+    Columns of the record that code reads are declared here with their types; the others are
+    attributes, too.
+
     Attributes:
         record: contents of its ``run.json``.
         directory: of the run, relative to the results' root.
@@ -60,8 +63,6 @@ class RunRow:
     goal_time = OfRecord[float | None]("goal_time")
     #: Simulated time, s.
     sim_time = OfRecord[float]("sim_time")
-    #: Wall time of the simulation, s.
-    wall_time = OfRecord[float]("wall_time")
     #: True if the planner gets information that no sensor can provide.
     privileged = OfRecord[bool]("knows_truth")
     #: True if every plugin and the planner came from an installed distribution.
@@ -167,6 +168,9 @@ class RunRow:
         return self.record.compared
 
 
+for _name in RunRecord.columns().keys() - vars(RunRow).keys():
+    setattr(RunRow, _name, OfRecord[Any](_name))
+
 #: Columns of runs in ``results.sqlite``, CSV, Parquet and data frames: attribute -> type.
 RUN_COLUMNS: Mapping[str, str] = {
     "suite": "TEXT",
@@ -174,11 +178,7 @@ RUN_COLUMNS: Mapping[str, str] = {
     "planner": "TEXT",
     "seed": "INTEGER",
     "status": "TEXT",
-    "reason": "TEXT",
-    "goal_time": "REAL",
-    "sim_time": "REAL",
-    "wall_time": "REAL",
-    "density": "REAL",
+    **RunRecord.columns(),
     "privileged": "BOOLEAN",
     "pinned": "BOOLEAN",
     "planner_process": "TEXT",

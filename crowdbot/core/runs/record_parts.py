@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, Literal, NamedTuple, TypeVar
 
 from annotated_types import Ge, Le
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
@@ -14,6 +14,13 @@ T = TypeVar("T")
 _IDENTITY = "identity"
 #: A field that decides what happens in a run: its id is the hash of all of these.
 Identity = Annotated[T, _IDENTITY]
+
+
+class ResultColumn(NamedTuple):
+    """Marks a field of a run's record that is a column of results, with its type in SQL."""
+
+    kind: Literal["REAL", "INTEGER", "BOOLEAN", "TEXT"]
+
 
 Hash = Annotated[str, Field(min_length=1, max_length=200)]
 Count = Annotated[int, Ge(0), Le(2**63 - 1)]
@@ -37,6 +44,12 @@ class RecordPart(BaseModel):
     def document(self) -> dict[str, Any]:
         """Return the part as JSON values, without defaults."""
         return self.model_dump(mode="json", exclude_unset=True)
+
+    @classmethod
+    def columns(cls) -> dict[str, str]:
+        """Return the fields marked as columns of results, and their types in SQL."""
+        fields = cls.model_fields.items()
+        return {n: m.kind for n, f in fields for m in f.metadata if isinstance(m, ResultColumn)}
 
     def identity(self) -> dict[str, Any]:
         """Return the fields marked as identity, as JSON values; all fields if none is marked."""
@@ -96,10 +109,10 @@ class EndedPart(RecordPart):
     """Ending of a run, or of one of its robots."""
 
     status: Status
-    reason: str
-    goal_time: Seconds | None
+    reason: Annotated[str, ResultColumn("TEXT")]
+    goal_time: Annotated[Seconds | None, ResultColumn("REAL")]
     toppled_time: Seconds | None = None
-    sim_time: Seconds
+    sim_time: Annotated[Seconds, ResultColumn("REAL")]
     planner_step_time: dict[str, float] = Field(default_factory=dict)
     clamped_commands: Count = 0
 
@@ -107,7 +120,7 @@ class EndedPart(RecordPart):
 class CostPart(EndedPart):
     """Ending of a whole run, with its computing time."""
 
-    wall_time: Seconds
+    wall_time: Annotated[Seconds, ResultColumn("REAL")]
     cpu_time: Seconds = 0.0
     real_time_factor: float = 0.0
 

@@ -96,7 +96,7 @@ class _Record(record_parts.CostPart):
 class RunRecord(_Record, RunIdentity):
     """The record of one complete run; docs/reference/run_directory.md explains each key.
 
-    A column of results is a field of this, or a property of `RunRow`.
+    A column of results is a field of this that is marked so, or a property of `RunRow`.
     """
 
     hashes: record_parts.Identity[record_parts.HashesPart]
@@ -116,7 +116,7 @@ class RunRecord(_Record, RunIdentity):
     excused: list[record_parts.ExcusedPart] = Field(default_factory=list)
     references: dict[str, str]
     reference_hashes: dict[str, record_parts.Hash] = Field(default_factory=dict)
-    density: float | None = None
+    density: Annotated[float | None, record_parts.ResultColumn("REAL")] = None
     conditions: dict[str, str] = Field(default_factory=dict)
     crowd: str | None = None
     metrics: dict[str, record_parts.MetricPart]
