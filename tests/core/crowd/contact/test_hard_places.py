@@ -58,11 +58,16 @@ def _gap(at: Array, world: CrowdWorld) -> float:
 
 
 def _stay_out(engine: CrowdEngine, seconds: float) -> Array:
-    """Assert that no one is in a solid at any tick; return all people's rows at the end."""
+    """Assert that no one is in a solid at any tick; return all people's rows at the end.
+
+    That is when all have gone, if they do.
+    """
     flat = engine.initial_state()
     _, rows = s.view(flat)
     for _ in range(round(seconds * TICKS)):
         engine.advance(flat)
+        if np.all(rows[:, s.WAITING] == s.GONE):
+            break
         at = rows[rows[:, s.WAITING] == s.PRESENT][:, [s.X, s.Y]]
         assert _gap(at, engine.world) >= RADIUS - MOST_OVERLAP - 1e-6
     return rows
