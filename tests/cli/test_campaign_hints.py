@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from crowdbot.core.campaign.plan import Plan, make_plan
 from crowdbot.core.campaign.request import CampaignRequest
 from crowdbot.core.campaign.run import State
 from crowdbot.core.registry.registry import discover
+from crowdbot.core.results import reference_file
 
 
 def planned(out: Path, scenario: str, **changes: object) -> Plan:
@@ -65,7 +67,8 @@ def test_the_end_of_the_users_own_runs_is_told_once(plan: Plan) -> None:
     assert OwnFirst().line(state_of(only_floors, floors)) == ""
 
 
-def test_known_runs_are_named(plan: Plan, tmp_path: Path) -> None:
+def test_known_runs_are_named(plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reference_file, "opened", cache(reference_file.opened))
     floors = sum(job.added for job in plan.jobs if job.kind == "run")
     assert known_runs(plan) == (
         f"{floors + 1} of {floors + 2} runs are in the reference scores: to save time, leave out "
