@@ -18,6 +18,7 @@ from crowdbot.plugin import (
     default,
 )
 
+_COUNTABLE = 1e15  # a tiny step is that of infinitely many beams
 _SLACK = 1e-9  # rad; 360 deg in any unit is one turn
 
 
@@ -35,7 +36,8 @@ class LidarSpec(RangeSensorSpec):
     @property
     def beams(self) -> int:
         """Return the number of beams of a fan."""
-        return max(1, round((self.angle_max - self.angle_min) / self.angle_step))
+        steps = (self.angle_max - self.angle_min) / self.angle_step
+        return max(1, round(min(steps, _COUNTABLE)))
 
     @model_validator(mode="after")
     def _fan(self) -> LidarSpec:

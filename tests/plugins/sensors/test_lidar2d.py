@@ -168,6 +168,7 @@ def test_the_robot_never_sees_itself() -> None:
         ({"angle_min": 1.0, "angle_max": 1.0}, "angle_min must be below"),
         ({"angle_min": -4.0, "angle_max": 4.0}, "one turn"),
         ({"angle_step": 1e-6}, "angle_step is too small"),
+        ({"angle_step": 5e-324}, "angle_step is too small"),
         ({"range_min": 11.0}, "range_min must be below"),
         ({"max_incidence": 0.0}, "greater than 0"),
         ({"max_incidence": "91 deg"}, "less than or equal"),
