@@ -33,7 +33,6 @@ from crowdbot.core.support.ticks import TICK, TICKS_PER_SECOND, ticks
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.ending import Ending
 from crowdbot.core.types.robot import RobotState
-from crowdbot.core.types.task import Task
 
 _ROUNDING = 1e-9  # m; rounding of the distance to the goal zone
 _TILT = RobotState._fields.index("tilt")
@@ -55,27 +54,24 @@ class MetricLogger(Block):
     def __init__(
         self,
         log: RunLog,
-        task: Task,
+        built: BuiltRun,
         walls: WallContacts,
         crowd: CrowdSystem | None,
-        rate: float,
         *,
         felt: bool,
         others: OtherRobots,
-        person: PersonWatch | None = None,
     ) -> None:
         """Monitor one robot.
 
         Args:
+            built: the robot with its task: a zone to reach, or a person with what to do.
             crowd: the people, if there are any.
-            rate: of the log, Hz.
             felt: True if the robot's base is one that forces act on.
             others: the other robots, and the ending of this one.
-            person: decides about a task whose goal is a person; None: the goal is a zone.
         """
         super().__init__()
-        self._log, self._task, self.walls, self._person = log, task, walls, person
-        self._ticks_per_sample = ticks(rate)
+        self._log, self._task, self.walls, self._person = log, built.task, walls, watch_of(built)
+        self._ticks_per_sample = ticks(built.scenario.rates.log)
         self._last_tick = -1
         self._before: Array | None = None  # the robot's state one tick ago
         self._clearance = ClearanceCache()
@@ -117,16 +113,21 @@ class MetricLogger(Block):
             self._log.sample(t, RobotState(*now.tolist()), crowd)
             if self._person is not None and crowd is not None:
                 arrived = self._is_done(self._person, t, RobotState(*now.tolist()), crowd)
+        ended = self._ended(t, arrived=arrived)
+        return None if ended is None else self._end(context, t, *ended)
+
+    def _ended(self, t: float, *, arrived: bool) -> tuple[Ending, str] | None:
+        """Return how the robot has ended, and the reason: the first rule that applies."""
+        ending = self._ending
         if arrived:
             reason = "centre inside the goal zone" if self._person is None else "task done"
-            return self._end(context, t, Ending.ARRIVED, reason)
+            return Ending.ARRIVED, reason
         if ending.failure:
-            return self._end(context, t, Ending.PLANNER_FAILED, ending.failure)
+            return Ending.PLANNER_FAILED, ending.failure
         if ending.toppled_time is not None:
-            return self._end(context, t, Ending.TOPPLED, f"toppled at {ending.toppled_time:.1f} s")
+            return Ending.TOPPLED, f"toppled at {ending.toppled_time:.1f} s"
         if t >= self._task.time_limit:
-            reason = f"time limit of {self._task.time_limit:g} s"
-            return self._end(context, t, Ending.TIMEOUT, reason)
+            return Ending.TIMEOUT, f"time limit of {self._task.time_limit:g} s"
         return None
 
     def _feel(self, context: Context, _values: DiscreteValues | None = None) -> None:
@@ -138,7 +139,7 @@ class MetricLogger(Block):
         if self._forces is not None and self.walls.near:
             self.walls.feel(wall_force(self._forces.Eval(context)))
 
-    def _end(self, context: Context, t: float, status: str, reason: str) -> EventStatus | None:
+    def _end(self, context: Context, t: float, status: Ending, reason: str) -> EventStatus | None:
         """End the robot's run; if it is the last robot, finish the whole run."""
         self._feel(context)  # there is no further step
         self._ending.end(status, reason, t)
@@ -204,13 +205,11 @@ def add_metric_logger(
     """Add what watches the task and takes samples to a diagram."""
     logger = MetricLogger(
         log,
-        built.task,
+        built,
         WallContacts(built.parts, built.model, log),
         crowd,
-        built.scenario.rates.log,
         felt=robot.rig is not None,
         others=others,
-        person=watch_of(built),
     )
     builder.AddNamedSystem("metric_logger", logger)
     builder.Connect(robot.port, logger.GetInputPort(ports.ROBOT_STATE))
