@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 
@@ -15,7 +15,10 @@ from crowdbot.cli.app.typer_app import load
 from crowdbot.core.crowd.build import build_cost
 from crowdbot.core.crowd.velocity_search.records import AGENT, COST_PARAMS, NEIGHBOUR, WALL
 from crowdbot.core.registry.registry import discover
+from crowdbot.core.results.rows import RUN_COLUMNS
 from crowdbot.core.support.records import RecordType
+from crowdbot.dsl.scenario.stream import Stream
+from crowdbot.dsl.scenario.streams import StreamChoice
 from tests.docs.doc_pages import read, section
 
 COMMANDS, PLUGINS = read("reference/commands.md"), read("reference/plugins.md")
@@ -169,3 +172,19 @@ def test_out_is_a_file_or_a_folder_and_the_only_word_for_it(name: str) -> None:
         row = re.search(r"^\|[^|]*--out ([A-Za-z.]+)`", rows, re.M)
         assert row is not None
         assert row[1] == out.metavar
+
+
+@pytest.mark.parametrize("heading", ["## Tables", "## Exported columns"])
+def test_every_column_of_runs_is_described(heading: str) -> None:
+    text = section(read("reference/results.md"), heading)
+    missing = [name for name in RUN_COLUMNS if f"`{name}`" not in text]
+    assert not missing, f"name {missing} in docs/reference/results.md, {heading}"
+
+
+def test_every_kind_of_stream_is_described() -> None:
+    text = read("howto/streams_of_people.md")
+    kinds: list[type[Stream]] = list(get_args(get_args(StreamChoice)[0]))
+    names = [stream.model_fields["kind"].default for stream in kinds]
+    missing = [name for name in names if f"kind: {name}" not in text]
+    assert len(kinds) > 1
+    assert not missing, f"describe {missing} in docs/howto/streams_of_people.md"
