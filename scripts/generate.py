@@ -1,8 +1,9 @@
 """Write everything that is made from the code and committed; ``make generate`` runs this.
 
 Pages, tables and pictures come from models, metrics, robots and imports. JSON Schemas are written,
-too, though not committed. A metric without a picture gets one. What is measured instead has
-commands of its own: ``make pictures``, ``make coverage``, scripts/write_crowd_validation.py,
+too, though not committed. A metric without a picture gets one by its function in
+scripts/metric_pictures/, and is named if it has none. What is measured instead has commands of its
+own: ``make pictures``, ``make coverage``, scripts/write_crowd_validation.py,
 scripts/write_flow_validation.py and scripts/write_realism_reference.py.
 
 Examples:

@@ -24,7 +24,7 @@ sys.path.insert(0, str(ROOT))  # as a script, too
 
 from scripts.metric_pictures import near, people, person, robot  # noqa: E402
 from scripts.metric_pictures.registry import DRAWINGS  # noqa: E402
-from scripts.metric_pictures.world import World  # noqa: E402
+from scripts.metric_pictures.world import World, all_metrics  # noqa: E402
 from scripts.write_metric_cards import with_declared, with_parameters  # noqa: E402
 
 DRAWN = (near, people, person, robot)
@@ -44,7 +44,9 @@ def main() -> int:
 
 
 def draw_missing() -> None:
-    """Draw the metrics that have no picture yet."""
+    """Draw the metrics that have no picture yet; name those that nothing draws."""
+    for metric in sorted(set(all_metrics()) - set(DRAWINGS)):
+        print(f"{metric} has no drawing: write one with @draws in scripts/metric_pictures/")
     missing = [metric for metric in DRAWINGS if not (IMAGES / f"{metric}.svg").is_file()]
     if missing:
         with tempfile.TemporaryDirectory() as folder:

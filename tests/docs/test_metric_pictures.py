@@ -16,15 +16,23 @@ from scripts.metric_pictures.near import wall_gap
 from scripts.metric_pictures.registry import DRAWINGS
 from scripts.metric_pictures.world import ANSWERS, World, all_metrics, made_up_commands
 from tests.docs.doc_pages import read
+from tests.paths import ROOT
 
 #: A picture is smaller than this.
 SMALL = 40_000
 
 
 def test_every_metric_is_drawn_and_no_other() -> None:
-    assert set(DRAWINGS) == set(all_metrics())
+    missing, extra = set(all_metrics()) - set(DRAWINGS), set(DRAWINGS) - set(all_metrics())
+    assert not missing, f"draw {missing}: a function with @draws in scripts/metric_pictures/"
+    assert not extra, f"scripts/metric_pictures/ draws {extra}, which no metric is named"
     assert {p.stem for p in pictures.IMAGES.glob("*.svg")} == set(DRAWINGS)
     assert all(p.stat().st_size < SMALL for p in pictures.IMAGES.glob("*.svg"))
+
+
+def test_the_readme_says_how_many_there_are() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert f"[{len(all_metrics())} metrics]" in readme, "count them again in README.md"
 
 
 @pytest.mark.parametrize("metric", DRAWINGS)
