@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 def known_runs(plan: Plan) -> str:
     """Return a hint on missing runs whose scores are in the shipped references; else ""."""
     from crowdbot.core.campaign.extend_references import known_jobs
-    from crowdbot.core.results.reference_file import SHIPPED, opened
+    from crowdbot.core.results.reference_file import SHIPPED, shipped_runs
 
     missing = [job for job in plan.jobs if job.kind == "run"]
-    # Reading them takes 0.2 s. A user who left out floors and ceilings knows the hint.
+    # Reading them takes half a second. A user who left out floors and ceilings knows the hint.
     if not any(job.added for job in missing):
         return ""
-    known = known_jobs(plan, opened(SHIPPED).results.runs)
+    known = known_jobs(plan, shipped_runs())
     if not known:
         return ""
     named = [*dict.fromkeys(job.label for job in known if not job.added)]
