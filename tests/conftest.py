@@ -9,8 +9,6 @@ from collections.abc import Generator, Iterator
 
 import pytest
 from hypothesis import HealthCheck, settings
-from hypothesis.internal import entropy
-from hypothesis.internal.conjecture import providers
 
 from tests import processor_time
 from tests.long_tests import LONG, VARIANTS
@@ -28,10 +26,6 @@ _any_time = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow]
 settings.register_profile("repeat", _any_time, derandomize=True, max_examples=25)
 settings.register_profile("explore", _any_time, derandomize=False, max_examples=200)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeat"))
-if settings.get_current_profile_name() == "repeat":
-    # Hypothesis also tries numbers and texts of the code under test, so that any change of it would
-    # change the examples; and looking for them in 1500 files takes each worker 2 s.
-    providers._get_local_constants = lambda: providers._local_constants
 
 
 @pytest.fixture(autouse=True, scope="session")
@@ -54,8 +48,6 @@ def pytest_collection() -> Iterator[None]:
     for them after every 700 new objects, as Python does, a twentieth of that of the tests.
     """
     gc.disable()
-    with entropy.deterministic_PRNG():  # collects garbage once: 1 s where all is imported
-        pass
     try:
         return (yield)
     finally:
