@@ -21,6 +21,7 @@ from crowdbot.core.sensing.mount import (
 from crowdbot.core.sensing.scene import Scene
 from crowdbot.core.sensing.sensor import NoiseGenerator
 from crowdbot.core.support.compiling.compile import kernel
+from crowdbot.core.support.immutable import immutable
 from crowdbot.core.support.plain_numbers import plain_numbers
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Pose
@@ -104,9 +105,7 @@ def _errors(
         ValueError: they are not one number of at most ``largest`` per beam; the message names the
             generator's class.
     """
-    shown = distance.copy()  # the generator's own
-    shown.flags.writeable = False
-    answer = generator.errors(shown, rng)
+    answer = generator.errors(immutable(distance), rng)
     try:
         errors = plain_numbers(answer)
     except (TypeError, ValueError) as error:
