@@ -1,9 +1,9 @@
-"""Runs mypy without collections of garbage, which take a third of its time where nothing is cached.
+"""Run mypy without garbage collection, which takes a third of its time where nothing is cached.
 
     python scripts/check_types.py [ARGUMENT OF MYPY...]
 
-All syntax trees stay until the end, and each collection walks through them. Without any, mypy takes
-2.6 GB instead of 1.1, so machines with little memory keep them. Messages and exit codes are mypy's.
+All syntax trees stay until the end, and each collection walks through them. Without it, mypy takes
+2.6 GB instead of 1.1, so machines with little memory keep it. Messages and exit codes are mypy's.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import os
 
 from mypy.__main__ import console_entry
 
-#: Below this a machine that also runs tests may lack memory, bytes.
+#: Memory below which a machine that also runs tests keeps garbage collection, bytes.
 ENOUGH = 7e9
 
 

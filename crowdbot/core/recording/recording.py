@@ -115,7 +115,7 @@ class Recording:
             self._cursor.close()
             self._cursor = None
             self._failure = self._failure or InputError(f"{self.path}: closed before it was read")
-        # Methods of this object: with them it, and the run, wait for a collection of garbage.
+        # Bound methods of this object: a cycle that only the garbage collector would free.
         self._takers.clear()
 
     # ------------------------------------------------------------------------ questions

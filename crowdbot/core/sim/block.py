@@ -3,7 +3,7 @@
 Drake asks each system for its witness functions after each unrestricted update. The bindings of
 Drake 1.51 (pybind11) then search the Python class for an overriding method, in vain: 4 % of a run's
 time in the simulator. They give up for good where they find a compiled function, which cannot
-override anything. The bindings of Drake 1.57 and newer do not search, but would call it.
+override anything. Those of Drake 1.57 and newer search ten times as fast, and would call it.
 """
 
 from __future__ import annotations

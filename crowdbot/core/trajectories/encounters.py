@@ -146,15 +146,14 @@ def onsets(
 
 
 def _encounter(run: Trajectories, jump_speed: float) -> Encounter:
-    found: Encounter = run.cached("encounter", lambda: _gaps(run))
-    valid = valid_agent_steps(run.t, people(run), jump_speed)
-    return replace(
-        found, valid=valid & valid_robot_steps(run.t, robot_of(run), jump_speed)[:, None]
-    )
+    robots = valid_robot_steps(run.t, robot_of(run), jump_speed)[:, None]
+    valid = valid_agent_steps(run.t, people(run), jump_speed) & robots
+    # Only the valid steps depend on the speed.
+    found: Encounter = run.cached("encounter", lambda: _measured(run, valid))
+    return replace(found, valid=valid)
 
 
-def _gaps(run: Trajectories) -> Encounter:
-    """Return all but the valid steps."""
+def _measured(run: Trajectories, valid: Mask) -> Encounter:
     robot, agents = robot_of(run), people(run)
     px = inf_to_nan(agents.x) - inf_to_nan(robot.x)[:, None]
     py = inf_to_nan(agents.y) - inf_to_nan(robot.y)[:, None]
@@ -172,7 +171,7 @@ def _gaps(run: Trajectories) -> Encounter:
         reach=reach,
         distance=distance,
         gap=gap,
-        valid=np.zeros((0, 0), np.bool_),
+        valid=valid,
         footprint=footprint,
         theta=theta,
     )

@@ -135,7 +135,7 @@ def heading_changes(t: Array, robot: RobotTrack, jump_speed: float) -> Array:
 
 
 def inf_to_nan(values: Array) -> Array:
-    """Replace infinite values by NaN: both mean unknown."""
+    """Replace infinite values by NaN, since both mean unknown; without any, return ``values``."""
     infinite = np.isinf(values)
     return np.where(infinite, np.nan, values) if infinite.any() else values
 

@@ -33,8 +33,8 @@ from crowdbot.core.types.person_task import TaskPerson
 from crowdbot.errors import InputError
 
 _Cached = TypeVar("_Cached")
-#: In a run's cache: the run. A run that held itself would keep its arrays, which may take 100 MB,
-#: until the next collection of garbage.
+#: Stands for the run in its own cache. A reference to itself would keep its arrays, which may take
+#: 100 MB, until the garbage collector runs.
 _ITSELF = object()
 
 

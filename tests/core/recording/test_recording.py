@@ -99,7 +99,7 @@ def test_trajectories_come_back_bit_by_bit(run: Run, record: Any, tmp_path: Path
     assert bits(crowdbot.Trajectories.from_mcap(str(path))) == bits(as_given(run))
 
 
-def test_a_closed_recording_is_freed_without_a_collection_of_garbage(tmp_path: Path) -> None:
+def test_a_closed_recording_is_freed_without_garbage_collection(tmp_path: Path) -> None:
     write_run(tmp_path / "run.mcap", FULL)
     gc.disable()
     try:

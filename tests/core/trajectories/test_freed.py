@@ -1,4 +1,4 @@
-"""A run is freed when nobody holds it, without a collection of garbage."""
+"""A run is freed with its last reference, without garbage collection."""
 
 from __future__ import annotations
 

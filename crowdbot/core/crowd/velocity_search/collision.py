@@ -97,7 +97,7 @@ def list_approaching(
         closing = spread + ((ux - near[j].nvx) * x + (uy - near[j].nvy) * y) / distance
         earliest, closes = SAFE * (distance - reach) / closing, closing > 0.0
         # Computed and written always, and kept if it counts: branches would be mispredicted.
-        rows[discs + 1].earliest, rows[discs + 1].gap2 = earliest, j
+        rows[discs + 1].earliest, rows[discs + 1].gap2 = earliest, j  # which neighbour: see below
         if every and not closes:
             rows[discs + 1].earliest = math.inf
         within = d2 < limit * limit
@@ -117,7 +117,9 @@ def list_approaching(
 
 @array_kernel
 def _sort_first(rows: Rows[DiscRow], discs: int) -> float:
-    """Sort the first of the discs by time, moving ``earliest`` and ``gap2`` only.
+    """Sort the first of the discs by time.
+
+    Moves ``earliest``, and ``gap2``, which holds the index of the neighbour until rows are filled.
 
     Returns:
         the least ``earliest`` of the discs after those, s.
