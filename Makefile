@@ -50,14 +50,14 @@ check: setup
 test: test-here
 	@$(MAKE) --no-print-directory pythons
 
-# Everything but the commands on other versions of Python.
+# Everything but the commands on other versions of Python. Types are checked while kernels compile,
+# which takes one core, and while tests wait.
 test-here: setup
-	@$(MAKE) --no-print-directory -j2 --output-sync kernels style js-where-node-is
-	@$(MAKE) --no-print-directory -j2 --output-sync types tests || { $(BIN)/mypy; false; }
+	@$(MAKE) --no-print-directory -j2 --output-sync kernels style js-where-node-is types tests \
+		|| { $(BIN)/mypy; false; }
 
-# With the types checked meanwhile, since many tests wait. Nothing that a person watches is held
-# back until its end.
-tests: setup
+# Nothing that a person watches is held back until its end.
+tests: kernels style js-where-node-is
 	@+$(MAKE) --no-print-directory --output-sync=none tests-as-they-go
 
 tests-as-they-go:

@@ -14,9 +14,10 @@ from typing import Any
 
 import roslibpy  # type: ignore[import-untyped]
 
+from crowdbot.core.types.ending import Ending
 from tests.core.live.pursuit import follow
 
-_ENDED = ("arrived", "timeout", "toppled", "planner_failed")
+_ENDED = {ending.value for ending in Ending if ending.complete}
 
 
 def main(port: int, kind: str) -> int:
