@@ -51,10 +51,10 @@ test: test-here
 	@$(MAKE) --no-print-directory pythons
 
 # Everything but the commands on other versions of Python. Types are checked while kernels compile,
-# which takes one core, and while tests wait.
+# which takes one core, and while tests wait. What is wrong with them is printed last, too.
 test-here: setup
 	@$(MAKE) --no-print-directory -j2 --output-sync kernels style js-where-node-is types tests \
-		|| { $(BIN)/mypy; false; }
+		|| { $(BIN)/mypy --no-error-summary; false; }
 
 # Nothing that a person watches is held back until its end.
 tests: kernels style js-where-node-is
