@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -12,6 +12,10 @@ from crowdbot.errors import hidden_character
 
 #: Largest length of a text, and number of texts in one drawing.
 _LONGEST_TEXT, _MOST_TEXTS = 80, 200
+
+
+#: Rows (K, C) of a drawing, or a function that returns them.
+DrawnRows = ArrayLike | Callable[[], ArrayLike]
 
 
 class Drawn(NamedTuple):
@@ -37,7 +41,7 @@ class Draw(Protocol):
     """Records a drawing; see `Observation`."""
 
     def __call__(
-        self, name: str, rows: ArrayLike, /, text: str | Sequence[str] | None = None
+        self, name: str, rows: DrawnRows, /, text: str | Sequence[str] | None = None
     ) -> None:
         """Record rows (K, C) by name; ``text``: one for all rows, or one for each."""
         ...

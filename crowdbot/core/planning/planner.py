@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core.planning.drawn import Draw, Drawn, texts_of_rows
+from crowdbot.core.planning.drawn import Draw, Drawn, DrawnRows, texts_of_rows
 from crowdbot.core.types.arrays import Array
 from crowdbot.core.types.motion import Command, Pose
 from crowdbot.core.types.person_task import PersonEstimate
@@ -90,7 +90,8 @@ class Observation:
             frame, m: rows (K, 2) of a path. Names that begin with ``points`` are dots, with
             ``arrows`` an arrow from each row to the next, two rows each. ``tracks`` has rows
             (K, 5) of people: number, x, y, vx, vy. ``draw(name, rows, text)`` shows a text at
-            each row: one for all, or a list of one each. The replay shows it.
+            each row: one for all, or a list of one each. The replay shows it. ``rows`` may be a
+            function that returns them, called only if the drawing is kept.
     """
 
     t: float
@@ -106,14 +107,14 @@ class Observation:
     person: PersonEstimate | None = None
 
 
-def named_drawing(name: str, rows: ArrayLike, text: str | Sequence[str] | None = None) -> Drawn:
-    """Return a valid drawing for the recording.
+def named_drawing(name: str, rows: DrawnRows, text: str | Sequence[str] | None = None) -> Drawn:
+    """Return a valid drawing for the recording; a function of rows is called.
 
     Raises:
         TypeError, ValueError: it is not a named table of finite numbers, a text has another type,
             or it is too large.
     """
-    table = _table(name, rows)
+    table = _table(name, rows() if callable(rows) else rows)
     if text is None:
         return Drawn(name, table)
     if name == TRACKS:

@@ -110,6 +110,10 @@ class RunLog:
         self.writer.command(t, command)
         self.writer.planner_time(t, seconds)
 
+    def wants_drawing(self, t: float, name: str) -> bool:
+        """Return True if `drawing` would keep a drawing of this name."""
+        return self._on_drawing is not None or self.writer.wants_drawing(t, name)
+
     def drawing(self, t: float, drawn: Drawn) -> None:
         """Record a drawing of the planner."""
         self.writer.drawing(t, drawn)

@@ -229,6 +229,13 @@ class RecordingWriter:
         """Write one value of a named signal."""
         self._series[Topic.SIGNAL].add(name, t, value)
 
+    def wants_drawing(self, t: float, name: str) -> bool:
+        """Return True if `drawing` would keep a drawing of this name and time (s)."""
+        if self._tools is None:
+            return False
+        last = self._drawn.get(name)
+        return last is None or last.due(ros.nanoseconds(t))
+
     def drawing(self, t: float, drawn: Drawn) -> None:
         """Write a planner's drawing, at the replay page's rate unless everything is recorded."""
         if self._tools is None:

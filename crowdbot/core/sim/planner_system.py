@@ -6,7 +6,7 @@ Discrete events run after unrestricted ones, so a planner step sees the readings
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -21,7 +21,7 @@ from pydrake.systems.framework import (
 from crowdbot.core.assistance.finder import PersonSight
 from crowdbot.core.assistance.guide import PersonGuide
 from crowdbot.core.assistance.target import lidars_of
-from crowdbot.core.planning.drawn import Drawn
+from crowdbot.core.planning.drawn import Drawn, DrawnRows
 from crowdbot.core.planning.host import STOP, HostedCommand, PlannerHost
 from crowdbot.core.planning.planner import (
     Observation,
@@ -80,6 +80,7 @@ class PlannerSystem(Block):
         on_step: Callable[[float, HostedCommand], None],
         on_signal: Callable[[float, str, float], None],
         on_drawing: Callable[[float, Drawn], None],
+        wants_drawing: Callable[[float, str], bool],
         people: TruthSource | None = None,
         guided: GuideInputs | None = None,
         crowd_size: int = 0,
@@ -88,6 +89,7 @@ class PlannerSystem(Block):
         """Connect a planner with its sensors and its robot.
 
         Args:
+            wants_drawing: True if ``on_drawing`` would keep a drawing of this time and name.
             people: true data of the people, for a privileged planner; None for all others.
             guided: tells the planner where the person of its task is, if there is one.
             crowd_size: length of the state vector of all people.
@@ -104,6 +106,7 @@ class PlannerSystem(Block):
         self._odometry = next((s for s in bank.slots.values() if is_odometry(s.info)), None)
         self._on_step, self._on_signal, self._bounds = on_step, on_signal, SignalBounds()
         self._on_drawing, self._drawn = on_drawing, drawing_bounds()
+        self._wants_drawing = wants_drawing
         self._port = self.DeclareVectorInputPort(
             ports.READINGS, bank.GetOutputPort(ports.READINGS).size()
         )
@@ -206,7 +209,10 @@ class PlannerSystem(Block):
         self._bounds.check(name)
         self._on_signal(t, name, value)
 
-    def _draw(self, t: float, drawn: Drawn) -> None:
+    def _draw(self, t: float, name: str, rows: DrawnRows, text: str | Sequence[str] | None) -> None:
+        if callable(rows) and not self._wants_drawing(t, name):
+            return
+        drawn = named_drawing(name, rows, text)
         self._drawn.check(drawn.name, drawn.size)
         self._on_drawing(t, drawn)
 
@@ -228,7 +234,7 @@ class PlannerSystem(Block):
                 if bank[s.stamp] >= 0.0
             },
             log=lambda name, value: self._signal(t, *named_signal(name, value)),
-            draw=lambda name, rows, text=None: self._draw(t, named_drawing(name, rows, text)),
+            draw=lambda name, rows, text=None: self._draw(t, name, rows, text),
             truth=truth,
         )
 
@@ -274,6 +280,7 @@ def add_planner(
         on_step=lambda t, step: log.command(t, step.command, step.seconds, step.clamped),
         on_signal=log.writer.signal,
         on_drawing=log.drawing,
+        wants_drawing=log.wants_drawing,
         people=truth_source(crowd, others.models) if privileged else None,
         guided=guided,
         crowd_size=0 if crowd is None else crowd.state.size(),

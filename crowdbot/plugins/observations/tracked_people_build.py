@@ -26,7 +26,7 @@ class TrackedPeople:
         """
         points = self._lidars(obs.readings, obs.t, obs.twist, obs.vy)
         rows = self._tracker.update(obs.t, obs.pose, points).rows
-        obs.draw("tracks", _in_base(rows, obs))
+        obs.draw("tracks", lambda: _in_base(rows, obs))
         return np.column_stack([rows[:, 1:], np.zeros(len(rows))])
 
 

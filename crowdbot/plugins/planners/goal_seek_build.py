@@ -28,8 +28,9 @@ class GoalSeek:
         """Return the next command; zero at the goal."""
         spec = self._spec
         distance, error = bearing(obs.pose, obs.goal)
-        aim = [distance * math.cos(error), distance * math.sin(error)]
-        obs.draw("aim", [[0.0, 0.0], aim])
+        obs.draw(
+            "aim", lambda: [[0.0, 0.0], [distance * math.cos(error), distance * math.sin(error)]]
+        )
         if distance <= spec.tolerance:
             return Command(0.0, 0.0)
         w = max(-self._limits.w_max, min(self._limits.w_max, spec.heading_gain * error))

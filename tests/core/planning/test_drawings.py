@@ -28,7 +28,7 @@ class Draws:
         obs.draw("path", [[0.0, 0.0], [1.0, 0.5]])
         obs.draw("nothing", [])
         obs.draw("why", [[1.0, 0.0], [2.0, 0.0]], text=["waits", "a\\x1b[1m\\nb"])
-        obs.draw("here", [[0.0, 0.0]], "one")
+        obs.draw("here", lambda: [[0.0, 0.0]], "one")
         return 0.2, 0.0
 """
 SCENARIO = "challenge-2026", "counter-d020-attentive-n01"
@@ -109,6 +109,48 @@ def test_a_page_has_each_text_once() -> None:
     assert (why["rows"], why["texts"]) == ([1, 0, 1, 2], ["waits", "goes"])
     assert why["which"] == [0, -1, 1, 0]
     assert "texts" not in plan
+
+
+class Counting:
+    """Draws rows that it counts, once as a table and once on demand."""
+
+    def __init__(self) -> None:
+        self.made = self.steps = 0
+
+    def reset(self, task: object, limits: object, sensors: object, seed: int) -> None:
+        pass
+
+    def step(self, obs: crowdbot.Observation) -> tuple[float, float]:
+        self.steps += 1
+        obs.draw("at once", [[0.0, obs.t]])
+        obs.draw("on demand", self._rows)
+        return 0.2, 0.0
+
+    def _rows(self) -> list[list[float]]:
+        self.made += 1
+        return [[0.0, float(self.made)]]
+
+
+@pytest.mark.parametrize(("record", "share"), [("all", 1.0), ("used", 0.5), ("none", 0.0)])
+def test_rows_on_demand_are_made_only_for_what_is_kept(
+    tmp_path: Path, record: str, share: float
+) -> None:
+    planner = Counting()
+    done = run(tmp_path, planner, record=record)
+    assert planner.made == round(share * planner.steps)
+    with crowdbot.Recording(done.directory / "run.mcap") as recording:
+        drawn = recording.drawings()
+    if share:
+        assert [d.t for d in drawn["on demand"]] == [d.t for d in drawn["at once"]]
+        assert [d.rows[0, 1] for d in drawn["on demand"]] == list(range(1, planner.made + 1))
+    else:
+        assert not drawn
+
+
+def test_rows_on_demand_are_checked_too() -> None:
+    with pytest.raises(ValueError, match="rows of 2 to 16"):
+        named_drawing("path", lambda: [[1.0]])
+    assert named_drawing("path", lambda: [[1.0, 2.0]])[1].tolist() == [[1.0, 2.0]]
 
 
 @pytest.mark.parametrize("in_process", [True, False])

@@ -153,7 +153,8 @@ class ForeignSide:
     def _draw(self, name: str, rows: Any, text: Any = None) -> None:
         if not isinstance(name, str) or not name:
             raise TypeError(f"draw: the name of a drawing is text, not {name!r}")
-        drawing: list[Any] = [name, [[float(x) for x in row] for row in rows]]
+        table = rows() if callable(rows) else rows
+        drawing: list[Any] = [name, [[float(x) for x in row] for row in table]]
         if text is not None:
             texts = [text] if isinstance(text, str) else text
             if not isinstance(texts, (list, tuple)) or not all(isinstance(x, str) for x in texts):

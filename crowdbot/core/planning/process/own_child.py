@@ -17,8 +17,8 @@ from types import SimpleNamespace
 from typing import Any
 
 import msgpack
-from numpy.typing import ArrayLike
 
+from crowdbot.core.planning.drawn import DrawnRows
 from crowdbot.core.planning.guarded import GuardedPlanner, planner_title
 from crowdbot.core.planning.planner import (
     NoValidCommand,
@@ -134,7 +134,7 @@ class OwnSide:
     def _log(self, name: str, value: float) -> None:
         self._signals.append(named_signal(name, value))
 
-    def _draw(self, name: str, rows: ArrayLike, /, text: str | Sequence[str] | None = None) -> None:
+    def _draw(self, name: str, rows: DrawnRows, /, text: str | Sequence[str] | None = None) -> None:
         name, table, texts = named_drawing(name, rows, text)
         labels = () if texts is None else (list(texts),)
         self._drawings.append([name, table.tolist(), *labels])

@@ -50,7 +50,7 @@ class CrowdPrediction(PeopleMpc):
         obs.log(f"{self.name}/trust", self._forecast.trust)
         obs.draw(
             "predicted people",
-            in_base(scene.pose, found[_SHOWN_STEP - 1 :: _SHOWN_STEP].reshape(-1, 2)),
+            lambda: in_base(scene.pose, found[_SHOWN_STEP - 1 :: _SHOWN_STEP].reshape(-1, 2)),
         )
         return found
 

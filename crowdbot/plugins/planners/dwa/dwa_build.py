@@ -131,12 +131,16 @@ class Dwa:
     def step(self, obs: Observation) -> Command:
         """Return the next command, and draw where it leads; zero at the goal."""
         command = self._command(obs)
+        obs.draw("plan", lambda: self._path(command))
+        return command
+
+    def _path(self, command: Command) -> Array:
+        """Return where a command leads within the horizon, (T, 2), m."""
         turning, steps = round(self._spec.turn_time / STEP), round(self._spec.horizon / STEP)
         rows = np.empty((max(steps, 1), 3))
-        rows[:] = command.v, command.w, command.vy
+        rows[:] = command
         rows[turning:, 1] = 0.0
-        obs.draw("plan", driven(rows, STEP))
-        return command
+        return driven(rows, STEP)
 
     def _command(self, obs: Observation) -> Command:
         """Return the next command; zero at the goal."""
@@ -166,7 +170,7 @@ class Dwa:
             velocities = np.concatenate([velocities, np.zeros_like(detour.beside)])
         direction, free = self._choose_direction(pose, detour, points, velocities)
         self._last = self._choose_velocity(obs, distance, detour, direction, points, velocities)
-        obs.draw("direction", [[0.0, 0.0], [math.cos(direction), math.sin(direction)]])
+        obs.draw("direction", lambda: [[0.0, 0.0], [math.cos(direction), math.sin(direction)]])
         obs.log("dwa/direction", direction)
         obs.log("dwa/free_time", free)
         return self._stuck.commanded(Command(*self._last), period)

@@ -77,11 +77,14 @@ class Mpc(PathPlanner):
         world = AroundRobot(people, scene.points, self._robot)
         state = (pose.x, pose.y, pose.yaw, *scene.twist)
         command = self._command(world, state, waypoint, top)
-        poses = poses_of((pose.x, pose.y, pose.yaw), self._plan, self._problem.dt)
-        obs.draw("plan", in_base(pose, poses[:, :2]))
+        obs.draw("plan", lambda: in_base(pose, self._planned_path(state)))
         obs.log("mpc/failed", self._failed)
         obs.log("mpc/braked", self._braked)
         return command
+
+    def _planned_path(self, state: MotionState) -> Array:
+        """Return the positions (T, 2) of the plan from a state, m."""
+        return poses_of(state[:3], self._plan, self._problem.dt)[:, :2]
 
     def _command(
         self, world: AroundRobot, state: MotionState, waypoint: tuple[float, float], top: float

@@ -77,7 +77,7 @@ class Mppi(PathPlanner):
         self._start(state, waypoint, top)
         cost = rollouts.improve(around, self._p, state, self._samples)
         obs.log("mppi/cost", min(cost, 100.0))
-        obs.draw("plan", driven(self._samples.plan[::2], 2.0 * spec.step_time))
+        obs.draw("plan", lambda: driven(self._samples.plan[::2], 2.0 * spec.step_time))
         return self._braking(AroundRobot(people, scene.points, self._robot), state)
 
     def _drawn(self, count: int, seed: int) -> samples.Samples:

@@ -47,7 +47,7 @@ class Navground(VelocityPlanner):
         limits = self.limits
         chosen = self.velocity(obs, scene, wish)
         obs.log("navground/change", math.hypot(chosen[0] - wish[0], chosen[1] - wish[1]))
-        obs.draw("velocity", in_base(scene.pose, _arrow(scene, chosen)))
+        obs.draw("velocity", lambda: in_base(scene.pose, _arrow(scene, chosen)))
         twist = self._behavior.actuated_twist
         v, vy = np.asarray(twist.velocity, dtype=np.float64).tolist()
         # Behaviours of the library leave the heading of robots that go sideways alone.

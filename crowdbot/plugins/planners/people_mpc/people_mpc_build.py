@@ -90,7 +90,7 @@ class PeopleMpc(PathPlanner):
         if at >= 0:
             v, w, vy = firsts[at].tolist()
             self._last, self._aside = (v, w, vy), plans.ASIDE[aside]
-            obs.draw("plan", in_base(pose, self.path(scene, waypoint)))
+            obs.draw("plan", lambda: in_base(pose, self.path(scene, waypoint)))
         obs.log(f"{self.name}/cost", min(cost, 100.0))
         obs.log(f"{self.name}/pace", self._pace)
         return Command(*self._last)

@@ -113,7 +113,7 @@ class Rds(VelocityPlanner):
         """Return the command that gives the reference point its velocity."""
         along, aside = self.velocity(obs, scene, wish)
         ahead = np.array([self._spec.reference_point, 0.0])
-        obs.draw("velocity", np.array([ahead, ahead + np.array([along, aside])]))
+        obs.draw("velocity", lambda: np.array([ahead, ahead + np.array([along, aside])]))
         if self.limits.vy_max > 0.0:
             turn = max(-self.limits.w_max, min(self.limits.w_max, _GAIN * error))
             return Command(along, turn if along or aside else 0.0, aside)

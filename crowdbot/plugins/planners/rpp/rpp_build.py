@@ -49,7 +49,7 @@ class Rpp(PathPlanner):
         """Return the command along the arc to a point."""
         spec, limits = self._spec, self.limits
         far, error = bearing(scene.pose, waypoint)
-        obs.draw("aim", [[0.0, 0.0], [far * math.cos(error), far * math.sin(error)]])
+        obs.draw("aim", lambda: [[0.0, 0.0], [far * math.cos(error), far * math.sin(error)]])
         if abs(error) > spec.turn_in_place:
             return self._checked(obs, scene, 0.0, _clamped(spec.turn_gain * error, limits.w_max))
         ahead = max(spec.look_ahead_min, abs(scene.twist[0]) * spec.look_ahead_time)
@@ -79,7 +79,7 @@ class Rpp(PathPlanner):
             NoValidCommand: its arc hits something.
         """
         steps = max(1, math.ceil(self._spec.collision_time / _STEP))
-        obs.draw("plan", driven(np.tile((v, w, 0.0), (steps, 1)), _STEP))
+        obs.draw("plan", lambda: driven(np.tile((v, w, 0.0), (steps, 1)), _STEP))
         bodies = _bodies(scene)
         now = _gap(bodies, self._robot, v, w, 0.0)
         if _gap(bodies, self._robot, v, w, self._spec.collision_time) < min(0.0, now - 1e-3):

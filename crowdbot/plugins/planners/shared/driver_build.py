@@ -54,7 +54,7 @@ class VelocityPlanner(PathPlanner):
         """
         chosen = self.velocity(obs, scene, wish)
         here = np.array([scene.pose.x, scene.pose.y])
-        obs.draw("velocity", in_base(scene.pose, np.array([here, here + chosen])))
+        obs.draw("velocity", lambda: in_base(scene.pose, np.array([here, here + chosen])))
         return follow(chosen, scene.pose.yaw, error, self.limits)
 
     @abstractmethod

@@ -124,7 +124,7 @@ class PlannerSurroundings:
         to_world = np.array([[c, s], [-s, c]])  # of row vectors
         here = np.array([pose.x, pose.y])
         tracks = self._people(obs, pose, points, to_world)
-        obs.draw("tracks", _from_robot(tracks, here, to_world))
+        obs.draw("tracks", lambda: _from_robot(tracks, here, to_world))
         people = np.column_stack([tracks[:, 1:], self._radii(obs, len(tracks))])
         seen = others(points @ to_world + here, people, _OWN)
         near = nearest_per_sector((seen - here) @ to_world.T, SECTORS, REACH)

@@ -108,7 +108,7 @@ class StopAndGo:
             seen = replace(seen, goal=(pose.x + c * x - s * y, pose.y + s * x + c * y))
         v, w, _ = self._seek.step(seen)
         most, room = self._safe_speed(scene, 0.0)
-        obs.draw("box", self._box(obs.twist[0]))
+        obs.draw("box", lambda: self._box(obs.twist[0]))
         obs.log("stop_and_go/room", min(room, 100.0))
         obs.log("stop_and_go/turn", turn)
         return Command(min(v, most), w)

@@ -43,7 +43,7 @@ class Mine:
         if obs.t > 1.0:
             raise ValueError("lost")
         obs.log("mine/nearest", min(obs.readings["front"].values))
-        obs.draw("why", [(1.0, 0.0)], text="waits")
+        obs.draw("why", lambda: [(1.0, 0.0)], text="waits")
         assert self.seed == 7 and self.task.start.x == 2.5 and self.limits.v_max == 0.65
         front = self.sensors["front"]
         assert len(front.angles) == 480 and front.camera is None and front.mount[0] == 0.2
