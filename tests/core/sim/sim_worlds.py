@@ -131,6 +131,10 @@ class Memory:
     def signal(self, t: float, name: str, value: float) -> None:
         pass
 
+    def wants_drawing(self, t: float, name: str) -> bool:
+        del t, name
+        return True
+
     def drawing(self, t: float, drawn: Any) -> None:
         pass
 
