@@ -217,9 +217,10 @@ class CrowdEngine:
         outlines = outline if outline.ndim == 3 else _alike(outline, len(robots))
         if int(flat[s.TICK]) % self.ticks_per_decision == 0:
             self._decide(flat, robots, outlines)
-        usual = self._usual_robots(len(robots))
-        numbers = usual[0] if numbers is None else numbers
-        stiffnesses = usual[1] if stiffnesses is None else stiffnesses
+        if numbers is None or stiffnesses is None:
+            usual = self._usual_robots(len(robots))
+            numbers = usual[0] if numbers is None else numbers
+            stiffnesses = usual[1] if stiffnesses is None else stiffnesses
         tick(*self._given(flat, robots, outlines, dt, numbers, stiffnesses))
 
     def _usual_robots(self, count: int) -> tuple[Indices, Array]:

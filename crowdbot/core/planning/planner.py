@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -135,7 +136,8 @@ def _table(name: str, rows: ArrayLike) -> NDArray[np.float32]:
         )
     if name == TRACKS and table.shape[1] != TRACK_COLUMNS:
         raise ValueError(f"draw: rows of '{TRACKS}' are number, x, y, vx, vy, not {table.shape[1]}")
-    if not np.isfinite(table).all():
+    # Its sum of squares is finite if all are, or else too large.
+    if not math.isfinite(np.vdot(table, table)) and not np.isfinite(table).all():
         raise ValueError(f"draw: '{name}' holds a number that is not finite")
     return table
 

@@ -111,7 +111,8 @@ class CrowdSystem(Block):
         values = state.get_mutable_discrete_state()
         crowd = values.get_mutable_value(self._crowd)
         before = crowd[self._news].tolist()
-        self._take_out(crowd)
+        if self._leaving:
+            self._take_out(crowd)
         if self._led and int(crowd[s.TICK]) % self.engine.ticks_per_decision == 0:
             for people in self._led:
                 people.set_goals(crowd, *self._rows[people.robot][:2].tolist())

@@ -61,7 +61,9 @@ def rows_of(count: int, record: RecordType[T]) -> Rows[T]:
 
 def rows_in(numbers: NDArray[np.float64], record: RecordType[T]) -> Rows[T]:
     """Return the records in a contiguous array, sharing its memory; `as_rows` for Python code."""
-    return cast(Rows[T], numbers.reshape(-1).view(cast(Any, record)))
+    dtype: Any = record
+    # A quarter of the time of a view; an unquoted type would be built at each call.
+    return cast("Rows[T]", np.ndarray(numbers.nbytes // record.itemsize, dtype, numbers))
 
 
 def numbers_of(*arguments: Any) -> tuple[Any, ...]:
