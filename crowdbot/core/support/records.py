@@ -60,10 +60,14 @@ def rows_of(count: int, record: RecordType[T]) -> Rows[T]:
 
 
 def rows_in(numbers: NDArray[np.float64], record: RecordType[T]) -> Rows[T]:
-    """Return the records in a contiguous array, sharing its memory; `as_rows` for Python code."""
+    """Return the records in a contiguous array, sharing its memory; `as_rows` for Python code.
+
+    Raises:
+        ValueError: the array is not contiguous, or does not hold whole records.
+    """
     dtype: Any = record
-    # A quarter of the time of a view; an unquoted type would be built at each call.
-    return cast("Rows[T]", np.ndarray(numbers.nbytes // record.itemsize, dtype, numbers))
+    # A fifth of the time of a view; an unquoted type would be built at each call.
+    return cast("Rows[T]", np.frombuffer(numbers, dtype))
 
 
 def numbers_of(*arguments: Any) -> tuple[Any, ...]:
