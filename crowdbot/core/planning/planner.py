@@ -92,7 +92,8 @@ class Observation:
             ``arrows`` an arrow from each row to the next, two rows each. ``tracks`` has rows
             (K, 5) of people: number, x, y, vx, vy. ``draw(name, rows, text)`` shows a text at
             each row: one for all, or a list of one each. The replay shows it. ``rows`` may be a
-            function that returns them, called only if the drawing is kept.
+            function that returns them, called only if the drawing is kept: it must not change the
+            planner.
     """
 
     t: float

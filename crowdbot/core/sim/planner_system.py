@@ -210,8 +210,10 @@ class PlannerSystem(Block):
         self._on_signal(t, name, value)
 
     def _draw(self, t: float, name: str, rows: DrawnRows, text: str | Sequence[str] | None) -> None:
-        if callable(rows) and not self._wants_drawing(t, name):
-            return
+        if callable(rows):
+            named_signal(name, 0.0)  # a wrong name is an error even if nothing is kept
+            if not self._wants_drawing(t, name):
+                return
         drawn = named_drawing(name, rows, text)
         self._drawn.check(drawn.name, drawn.size)
         self._on_drawing(t, drawn)

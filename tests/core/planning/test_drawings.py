@@ -147,6 +147,21 @@ def test_rows_on_demand_are_made_only_for_what_is_kept(
         assert not drawn
 
 
+@pytest.mark.parametrize("record", ["used", "none"])
+@pytest.mark.parametrize("name", ["", ["path"]])
+def test_a_wrong_name_is_an_error_even_if_nothing_is_kept(
+    tmp_path: Path, record: str, name: object
+) -> None:
+    class Misnames(Counting):
+        def step(self, obs: crowdbot.Observation) -> tuple[float, float]:
+            obs.draw(name, self._rows)  # type: ignore[arg-type]
+            return 0.2, 0.0
+
+    done = run(tmp_path, Misnames(), record=record)
+    assert done.status == "planner_failed"
+    assert "the name of a signal is text" in done.record.reason
+
+
 def test_rows_on_demand_are_checked_too() -> None:
     with pytest.raises(ValueError, match="rows of 2 to 16"):
         named_drawing("path", lambda: [[1.0]])
