@@ -84,7 +84,7 @@ class CrowdSystem(Block):
         ]
         initial = engine.initial_state(count)
         news = [s.TRIPS, *(s.felt_at(initial, k, e) for k in range(count) for e in _NEWS)]
-        self._news = np.array(news)  # numpy converts a list at each use
+        self._news = tuple(int(place) for place in news)
         self._leaving = [k for k in range(count) if self._endings[k].leaves]
         crowd, events = self.DeclareDiscreteState(initial), self.DeclareDiscreteState(1 + count)
         self._crowd, self._events = DiscreteStateIndex(crowd), DiscreteStateIndex(events)
@@ -110,14 +110,14 @@ class CrowdSystem(Block):
             row[SEEN] = port.Eval(context)[:6]
         values = state.get_mutable_discrete_state()
         crowd = values.get_mutable_value(self._crowd)
-        before = crowd[self._news].tolist()
+        before = [*map(crowd.item, self._news)]
         if self._leaving:
             self._take_out(crowd)
         if self._led and int(crowd[s.TICK]) % self.engine.ticks_per_decision == 0:
             for people in self._led:
                 people.set_goals(crowd, *self._rows[people.robot][:2].tolist())
         self._advance(crowd)
-        news = crowd[self._news].tolist()
+        news = [*map(crowd.item, self._news)]
         if news == before:  # at most ticks: nothing touches a robot and nothing ends
             return
         events = values.get_mutable_value(self._events)

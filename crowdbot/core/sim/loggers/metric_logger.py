@@ -35,7 +35,7 @@ from crowdbot.core.types.ending import Ending
 from crowdbot.core.types.robot import RobotState
 
 _ROUNDING = 1e-9  # m; rounding of the distance to the goal zone
-_TILT = RobotState._fields.index("tilt")
+_TILT, _VX, _VY = (RobotState._fields.index(name) for name in ("tilt", "vx", "vy"))
 #: A robot that leans by more than this has toppled, rad.
 LEANS = math.radians(60.0)
 
@@ -168,8 +168,7 @@ class MetricLogger(Block):
 
     def _look(self, t: float, robot: RobotState, before: Array | None) -> bool:
         """Check near walls and the goal; return True if the robot has arrived."""
-        was = robot if before is None else RobotState(*before.tolist())
-        speed = 0.0 if before is None else math.hypot(was.vx, was.vy)
+        speed = 0.0 if before is None else math.hypot(before.item(_VX), before.item(_VY))
         free = self.walls.watch(t, robot, speed)
         if self._forces is None:
             self.walls.feel(None)
@@ -182,7 +181,8 @@ class MetricLogger(Block):
         toppled = self._ending.toppled_time is not None
         if toppled or distance > 0.0 or not inside(zone, robot.x, robot.y):
             return False
-        fraction = entry_fraction(zone, was.x, was.y, robot.x, robot.y) if t > 0.0 else 1.0
+        was_x, was_y = (robot.x, robot.y) if before is None else before[:2].tolist()
+        fraction = entry_fraction(zone, was_x, was_y, robot.x, robot.y) if t > 0.0 else 1.0
         self._ending.goal_time = t - (1.0 - fraction) * TICK
         return True
 
