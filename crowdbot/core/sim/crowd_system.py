@@ -84,7 +84,7 @@ class CrowdSystem(Block):
         ]
         initial = engine.initial_state(count)
         news = [s.TRIPS, *(s.felt_at(initial, k, e) for k in range(count) for e in _NEWS)]
-        self._news = tuple(int(place) for place in news)
+        self._news = tuple(news)
         self._leaving = [k for k in range(count) if self._endings[k].leaves]
         crowd, events = self.DeclareDiscreteState(initial), self.DeclareDiscreteState(1 + count)
         self._crowd, self._events = DiscreteStateIndex(crowd), DiscreteStateIndex(events)

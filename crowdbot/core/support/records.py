@@ -66,7 +66,7 @@ def rows_in(numbers: NDArray[np.float64], record: RecordType[T]) -> Rows[T]:
         ValueError: the array is not contiguous, or does not hold whole records.
     """
     dtype: Any = record
-    # A fifth of the time of a view; an unquoted type would be built at each call.
+    # Half the time of a view; an unquoted type would be built at each call.
     return cast("Rows[T]", np.frombuffer(numbers, dtype))
 
 
